@@ -37,7 +37,7 @@ fn the_emulated_chip_gives_the_same_commands_as_a_call() {
         digest_of(&mut link, STEPS),
         digest_of(&mut Direct::new(), STEPS)
     );
-    let stats = link.stats();
+    let stats = link.end().stats();
     assert_eq!((stats.dropped, stats.crc_errors), (0, 0), "{stats:?}");
     assert!(
         !link.take_log().is_empty(),
@@ -74,7 +74,7 @@ fn byte_faults_to_the_emulated_chip_change_no_command() {
         digest_of(&mut link, STEPS),
         digest_of(&mut Direct::new(), STEPS)
     );
-    assert!(link.stats().retries > 0);
+    assert!(link.end().stats().retries > 0);
 }
 
 #[cfg(feature = "logs")]

@@ -97,7 +97,7 @@ fn no_byte_fault_changes_a_command() {
         for seed in 0..4 {
             let mut link = faulty(faults, seed);
             assert_eq!(digest_of(&mut link, STEPS), clean, "{faults}, seed {seed}");
-            let stats = link.stats();
+            let stats = link.end().stats();
             assert_eq!(stats.sent, u64::from(STEPS) + 2 + stats.retries);
             if !faults.starts_with("duplicate") {
                 assert!(stats.retries > 0, "{faults}, seed {seed}: {stats:?}");
@@ -370,6 +370,6 @@ fn links_open_by_name() {
         digest_of(broken.as_mut(), 50),
         digest_of(direct.as_mut(), 50)
     );
-    assert!(broken.stats().retries > 0);
-    assert_eq!(direct.stats().retries, 0);
+    assert!(broken.end().stats().retries > 0);
+    assert_eq!(direct.end().stats().retries, 0);
 }

@@ -20,6 +20,7 @@ use fieldline_protocol::message::{
     Team, Tile, UnevenGround,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
+use fixed::types::{I4F12, I16F16};
 use proptest::prelude::*;
 
 proptest! {
@@ -66,6 +67,205 @@ proptest! {
     }
 }
 
+/// The least number of 16 bits: it takes most bytes.
+const FAR: I4F12 = I4F12::MIN;
+/// The least number of 32 bits.
+const FARTHEST: I16F16 = I16F16::MIN;
+
+fn largest_tile() -> Reply {
+    Reply::Tile(Some(Tile {
+        x: i16::MIN,
+        y: i16::MIN,
+        cells: [0xff; TILE_BYTES].into_iter().collect(),
+        skeleton: [0xff; TILE_SKELETON_BYTES].into_iter().collect(),
+        closed_regions: u16::MAX,
+        given_up_regions: u16::MAX,
+        visit_stamps: [u8::MAX; TILE_STAMPS],
+    }))
+}
+
+fn largest_laser() -> Laser {
+    Laser {
+        x: FAR,
+        y: FAR,
+        z: FAR,
+        pitch: FAR,
+        first_bearing: FARTHEST,
+        bearing_step: FARTHEST,
+        beams: u16::MAX,
+        range_limit_mm: u16::MAX,
+    }
+}
+
+fn largest_strategy() -> message::Strategy {
+    message::Strategy::Esbpf(message::SpaceField {
+        origin: (FARTHEST, FARTHEST),
+        size: (FARTHEST, FARTHEST),
+        until_permille: u16::MAX,
+        impatience_s: Some(u16::MAX),
+    })
+}
+
+fn largest_ground() -> UnevenGround {
+    UnevenGround {
+        preference: Preference::Both,
+        levels: true,
+        obstacle: FAR,
+        near: FAR,
+        hole: FAR,
+        least: FAR,
+        most: FAR,
+        height_scale: FAR,
+        global_scale: FARTHEST,
+        climb: FAR,
+        roll: FAR,
+        step: FAR,
+    }
+}
+
+fn largest_loops() -> LoopLimits {
+    LoopLimits {
+        least: FARTHEST,
+        most: FARTHEST,
+        most_per_frontier: FARTHEST,
+        detour: FARTHEST,
+        slack: FARTHEST,
+    }
+}
+
+fn largest_team() -> Team {
+    Team {
+        member: Member {
+            id: u8::MAX,
+            boot: u16::MAX,
+        },
+        origin: (FARTHEST, FARTHEST),
+        yaw: FARTHEST,
+        sd_mm: u16::MAX,
+        sd_mrad: u16::MAX,
+    }
+}
+
+fn largest_fence() -> Fence {
+    Fence {
+        corners: [(FARTHEST, FARTHEST); FENCE_CORNERS].into_iter().collect(),
+        polygons: [FencePolygon {
+            corners: u8::MAX,
+            bounds: true,
+        }; FENCE_POLYGONS]
+            .into_iter()
+            .collect(),
+    }
+}
+
+fn largest_start() -> Start {
+    Start {
+        strategy: largest_strategy(),
+        lasers: [largest_laser(); MAX_SCANS].into_iter().collect(),
+        hull: Hull {
+            length_mm: u16::MAX,
+            width_mm: u16::MAX,
+            height_mm: u16::MAX,
+        },
+        robot_radius_mm: u16::MAX,
+        max_linear: FAR,
+        max_angular: FAR,
+        linear_accel: FAR,
+        angular_accel: FAR,
+        period_ms: u16::MAX,
+        uneven_ground: Some(largest_ground()),
+        loops: largest_loops(),
+        order: Order::Gain { worth: FAR },
+        team: Some(largest_team()),
+        localise: true,
+        survey: true,
+        fence: largest_fence(),
+        budget: Budget {
+            range_m: Some(u16::MAX),
+            time_s: Some(u16::MAX),
+        },
+    }
+}
+
+fn largest_part() -> CorrectedTiles {
+    let tile = CorrectedTile {
+        x: i16::MIN,
+        y: i16::MIN,
+        shift: (i8::MIN, i8::MIN),
+        bytes: u16::MAX,
+    };
+    CorrectedTiles {
+        epoch: u16::MAX,
+        first: u16::MAX,
+        last: true,
+        tiles: [tile; CORRECTED_TILES].into_iter().collect(),
+        cells: [0xff; CORRECTED_BYTES].into_iter().collect(),
+    }
+}
+
+fn largest_crash() -> Crash {
+    let file = "f".repeat(CRASH_FILE_BYTES).as_str().try_into().unwrap();
+    Crash {
+        cause: Cause::Fault,
+        at: u32::MAX,
+        file,
+    }
+}
+
+fn largest_identity() -> Identity {
+    Identity {
+        version: u16::MAX,
+        schema: u32::MAX,
+        build: "b".repeat(BUILD_BYTES).as_str().try_into().unwrap(),
+        boots: u32::MAX,
+        tile_slots: u16::MAX,
+        tile_pool: u16::MAX,
+        max_frame: u16::MAX,
+        stale_ms: u16::MAX,
+        crash: Some(largest_crash()),
+        counters: Counters {
+            received: u32::MAX,
+            crc_errors: u32::MAX,
+            dropped: u32::MAX,
+            duplicates: u32::MAX,
+            stale_stops: u32::MAX,
+        },
+    }
+}
+
+fn largest_row() -> FieldRow {
+    FieldRow {
+        row: 255,
+        origin_x: i16::MIN,
+        origin_y: i16::MIN,
+        scale: 255,
+        q: [f32::MAX; FIELD_SIDE].into_iter().collect(),
+        cells: [u8::MAX; FIELD_CELL_BYTES].into_iter().collect(),
+    }
+}
+
+fn largest_path() -> Path {
+    Path {
+        tractor: Some((i16::MIN, i16::MIN)),
+        shield: Some([(i16::MIN, i16::MIN); 2]),
+        length: u8::MAX,
+        cells: [(i16::MIN, i16::MIN); PATH_PAGE].into_iter().collect(),
+    }
+}
+
+fn most_frontiers() -> Reply {
+    Reply::Frontiers(
+        [ResidualFrontier {
+            x: i16::MIN,
+            y: i16::MIN,
+            cells: u16::MAX,
+            reason: ResidualReason::NoProgress,
+        }; MAX_FRONTIERS]
+            .into_iter()
+            .collect(),
+    )
+}
+
 /// The largest message of each kind, written by hand.
 #[test]
 fn the_largest_messages_fit_and_fill_their_frames() {
@@ -74,163 +274,21 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         &Request::Observation(largest_observation(u16::MAX)),
     );
     assert_eq!(worst.len(), MAX_REQUEST_FRAME);
-    let tile = Reply::Tile(Some(Tile {
-        x: i16::MIN,
-        y: i16::MIN,
-        cells: [0xff; TILE_BYTES].into_iter().collect(),
-        skeleton: [0xff; TILE_SKELETON_BYTES].into_iter().collect(),
-        closed_regions: u16::MAX,
-        given_up_regions: u16::MAX,
-        visit_stamps: [u8::MAX; TILE_STAMPS],
-    }));
-    assert_eq!(reply_frame(u16::MAX, &tile).len(), MAX_REPLY_FRAME);
-
-    let far = fixed::types::I4F12::MIN;
-    let farthest = fixed::types::I16F16::MIN;
-    let laser = Laser {
-        x: far,
-        y: far,
-        z: far,
-        pitch: far,
-        first_bearing: farthest,
-        bearing_step: farthest,
-        beams: u16::MAX,
-        range_limit_mm: u16::MAX,
-    };
-    let start = Request::Control(Control::Start(Start {
-        strategy: message::Strategy::Esbpf(message::SpaceField {
-            origin: (farthest, farthest),
-            size: (farthest, farthest),
-            until_permille: u16::MAX,
-            impatience_s: Some(u16::MAX),
-        }),
-        lasers: [laser; MAX_SCANS].into_iter().collect(),
-        hull: Hull {
-            length_mm: u16::MAX,
-            width_mm: u16::MAX,
-            height_mm: u16::MAX,
-        },
-        robot_radius_mm: u16::MAX,
-        max_linear: far,
-        max_angular: far,
-        linear_accel: far,
-        angular_accel: far,
-        period_ms: u16::MAX,
-        uneven_ground: Some(UnevenGround {
-            preference: Preference::Both,
-            levels: true,
-            obstacle: far,
-            near: far,
-            hole: far,
-            least: far,
-            most: far,
-            height_scale: far,
-            global_scale: farthest,
-            climb: far,
-            roll: far,
-            step: far,
-        }),
-        loops: LoopLimits {
-            least: farthest,
-            most: farthest,
-            most_per_frontier: farthest,
-            detour: farthest,
-            slack: farthest,
-        },
-        order: Order::Gain { worth: far },
-        team: Some(Team {
-            member: Member {
-                id: u8::MAX,
-                boot: u16::MAX,
-            },
-            origin: (farthest, farthest),
-            yaw: farthest,
-            sd_mm: u16::MAX,
-            sd_mrad: u16::MAX,
-        }),
-        localise: true,
-        survey: true,
-        fence: Fence {
-            corners: [(farthest, farthest); FENCE_CORNERS].into_iter().collect(),
-            polygons: [FencePolygon {
-                corners: u8::MAX,
-                bounds: true,
-            }; FENCE_POLYGONS]
-                .into_iter()
-                .collect(),
-        },
-        budget: Budget {
-            range_m: Some(u16::MAX),
-            time_s: Some(u16::MAX),
-        },
-    }));
-    let file = "f".repeat(CRASH_FILE_BYTES).as_str().try_into().unwrap();
-    let crash = Crash {
-        cause: Cause::Fault,
-        at: u32::MAX,
-        file,
-    };
-    let others = [
-        Reply::Hello(Identity {
-            version: u16::MAX,
-            schema: u32::MAX,
-            build: "b".repeat(BUILD_BYTES).as_str().try_into().unwrap(),
-            boots: u32::MAX,
-            tile_slots: u16::MAX,
-            tile_pool: u16::MAX,
-            max_frame: u16::MAX,
-            stale_ms: u16::MAX,
-            crash: Some(crash.clone()),
-            counters: Counters {
-                received: u32::MAX,
-                crc_errors: u32::MAX,
-                dropped: u32::MAX,
-                duplicates: u32::MAX,
-                stale_stops: u32::MAX,
-            },
-        }),
-        Reply::Crash(crash),
-        Reply::FieldRow(Some(FieldRow {
-            row: 255,
-            origin_x: i16::MIN,
-            origin_y: i16::MIN,
-            scale: 255,
-            q: [f32::MAX; FIELD_SIDE].into_iter().collect(),
-            cells: [u8::MAX; FIELD_CELL_BYTES].into_iter().collect(),
-        })),
-        Reply::Path(Path {
-            tractor: Some((i16::MIN, i16::MIN)),
-            shield: Some([(i16::MIN, i16::MIN); 2]),
-            length: u8::MAX,
-            cells: [(i16::MIN, i16::MIN); PATH_PAGE].into_iter().collect(),
-        }),
-        Reply::Frontiers(
-            [ResidualFrontier {
-                x: i16::MIN,
-                y: i16::MIN,
-                cells: u16::MAX,
-                reason: ResidualReason::NoProgress,
-            }; MAX_FRONTIERS]
-                .into_iter()
-                .collect(),
-        ),
-    ];
-    let tile = CorrectedTile {
-        x: i16::MIN,
-        y: i16::MIN,
-        shift: (i8::MIN, i8::MIN),
-        bytes: u16::MAX,
-    };
-    let part = Request::Tiles(CorrectedTiles {
-        epoch: u16::MAX,
-        first: u16::MAX,
-        last: true,
-        tiles: [tile; CORRECTED_TILES].into_iter().collect(),
-        cells: [0xff; CORRECTED_BYTES].into_iter().collect(),
-    });
+    assert_eq!(
+        reply_frame(u16::MAX, &largest_tile()).len(),
+        MAX_REPLY_FRAME
+    );
+    let start = Request::Control(Control::Start(largest_start()));
     assert!(request_frame(1, &start).len() <= MAX_REQUEST_FRAME);
+    let part = Request::Tiles(largest_part());
     assert!(request_frame(1, &part).len() <= MAX_REQUEST_FRAME);
-    for reply in others {
+    for reply in [
+        Reply::Hello(largest_identity()),
+        Reply::Crash(largest_crash()),
+        Reply::FieldRow(Some(largest_row())),
+        Reply::Path(largest_path()),
+        most_frontiers(),
+    ] {
         assert!(reply_frame(1, &reply).len() <= MAX_REPLY_FRAME);
     }
     let mut out = [0; MAX_REPLY_FRAME];

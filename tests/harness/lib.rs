@@ -22,6 +22,7 @@
 //! | [`places`] | pits and a building, found in a world's definition |
 //! | [`orders`] | orders of frontiers beside one another, as ratios to a baseline |
 //! | [`sessions`] | whole sessions of hostile hosts, and the corpus |
+//! | [`fences`] | fences drawn at random around a start |
 //! | [`starts`] | starts drawn at random in a flat world |
 //! | [`ablation`] | every tuned constant at half and at double its default |
 //! | [`bitmap`] | seeded bit maps; thinning and search cell by cell, as oracles |
@@ -44,6 +45,7 @@ pub mod digests;
 pub mod elf;
 pub mod emulator;
 pub mod ends;
+pub mod fences;
 pub mod field;
 pub mod flat;
 pub mod flatness;

@@ -14,17 +14,12 @@
 //! Robots have *met* if their centres were less than 2 m apart. They are *blocked* for good if not
 //! all have explored everything within [`LIMIT_S`]. Units: metres, seconds, radians.
 
+mod ordered;
+
 use core::f64::consts::PI;
 
-use fieldline_device::session::{self, Boot};
-use fieldline_device::{Memory, Pilot, SLOTS, State, TILES, convert};
-use fieldline_planner::{Config, Goal, GoalLevel, Order, Tuning, Workspace, step};
-use fieldline_protocol::message::{
-    Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
-    Packet, Path, Refusal, ResidualFrontier, Status, Tile, Twist,
-};
-use host_sim::link::inside::Inside;
-use host_sim::link::{Link, LinkError, LinkStats};
+use fieldline_planner::GoalLevel;
+use host_sim::link::Link;
 use host_sim::report::TeamReport;
 use host_sim::trial::mission::Mission;
 use host_sim::trial::team::{TeamMission, TeamRecord, explore};
@@ -33,6 +28,7 @@ use host_sim::world::{Class, GridCell, Occupancy, Start, World};
 use crate::random::Random;
 use crate::table::Table;
 use crate::teams::longest_stand_s;
+use ordered::{Ordered, to_greater_x, to_less_x};
 
 /// Simulated time within which all is explored.
 pub const LIMIT_S: u32 = 300;
@@ -169,157 +165,6 @@ impl Narrow {
         let robots = starts.len();
         starts.rotate_left(seed as usize % robots);
         starts
-    }
-}
-
-/// Goals with less x count as 80 m farther away.
-fn to_greater_x(goal: &Goal) -> u8 {
-    if goal.cell.x < 0 { 8 } else { 0 }
-}
-
-/// Goals with greater x count as 80 m farther away.
-fn to_less_x(goal: &Goal) -> u8 {
-    if goal.cell.x < 0 { 0 } else { 8 }
-}
-
-/// A planner with an order of goals, behind a link without bytes.
-struct Ordered {
-    level: GoalLevel,
-    config: Option<Config>,
-    state: Box<State>,
-    workspace: Box<Workspace>,
-    status: Status,
-}
-
-impl Ordered {
-    fn new(level: GoalLevel) -> Self {
-        Self {
-            level,
-            config: None,
-            state: Box::new(State::new()),
-            workspace: Box::new(Workspace::new()),
-            status: Status::Idle,
-        }
-    }
-
-    /// Returns the configuration of a session, with the order.
-    fn configure(&self, control: &Control) -> Option<Config> {
-        let Control::Start(start) = control else {
-            return None;
-        };
-        let told = convert::config(start, &Tuning::DEFAULT).expect("a start");
-        let mut builder = Config::builder(*told.robot())
-            .radius_m(told.radius_m())
-            .order(Order::Gain { worth: 0.0 })
-            .goal_level(self.level);
-        for laser in told.lasers() {
-            builder = builder.laser(*laser);
-        }
-        if let Some(place) = told.team() {
-            builder = builder.team(*place);
-        }
-        Some(builder.build().expect("a configuration"))
-    }
-
-    fn memory(&mut self) -> Memory<'_, TILES, SLOTS> {
-        Memory {
-            state: &mut self.state,
-            workspace: &mut self.workspace,
-            tuning: &Tuning::DEFAULT,
-        }
-    }
-
-    fn config(&self) -> Result<Config, LinkError> {
-        let refused = || LinkError::Refused(Refusal::NotStarted.to_string());
-        self.config.clone().ok_or_else(refused)
-    }
-}
-
-impl Link for Ordered {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        Ok(session::identity(Boot::default(), TILES, SLOTS))
-    }
-
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        if let Some(config) = self.configure(control) {
-            self.state.reset(&config);
-            (self.config, self.status) = (Some(config), Status::Exploring);
-        }
-        Ok(self.status)
-    }
-
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        let config = self.config()?;
-        let input = convert::input(observation, config.lasers()).expect("an observation");
-        if self.status != Status::Exploring {
-            self.state.stand(&config, &input);
-            return Ok(Command {
-                status: self.status,
-                ..Command::default()
-            });
-        }
-        let (state, workspace) = (&mut *self.state, &mut *self.workspace);
-        let output = step(&config, state, workspace, input, &mut ());
-        self.status = convert::wire_status(output.status);
-        let velocity = match self.status {
-            Status::Exploring => convert::wire_twist(&output.velocity),
-            _ => Twist::default(),
-        };
-        Ok(Command {
-            velocity,
-            status: self.status,
-            forgot_arrivals: output.forgot_arrivals,
-            ..Command::default()
-        })
-    }
-
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        Ok(Pilot::tile(&self.memory(), x, y))
-    }
-
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
-        Ok(Pilot::field_row(&self.memory(), row))
-    }
-
-    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
-        Ok(Pilot::frontiers(&self.memory()).iter().copied().collect())
-    }
-
-    fn path(&mut self, from: u8) -> Result<Path, LinkError> {
-        Ok(Pilot::path(&self.memory(), from))
-    }
-
-    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
-        let config = self.config()?;
-        if let Some(packet) = convert::packet(packet) {
-            self.state.hear(&config, &packet);
-        }
-        Ok(())
-    }
-
-    fn open_correction(&mut self, _: &Correct) -> Result<CorrectionProgress, LinkError> {
-        Err(LinkError::Refused("nobody corrects this map".into()))
-    }
-
-    fn send_tiles(&mut self, _: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
-        Err(LinkError::Refused("nobody corrects this map".into()))
-    }
-
-    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
-        let config = self.config()?;
-        Ok(self.state.say(&config).map(|it| convert::wire_packet(&it)))
-    }
-
-    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-        None
-    }
-
-    fn stats(&self) -> LinkStats {
-        LinkStats::default()
-    }
-
-    fn take_log(&mut self) -> Vec<u8> {
-        Vec::new()
     }
 }
 

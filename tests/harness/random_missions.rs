@@ -12,7 +12,6 @@
 //! Units: metres, simulated milliseconds.
 
 use core::cell::RefCell;
-use core::f64::consts::TAU;
 use core::time::Duration;
 use std::rc::Rc;
 
@@ -22,13 +21,13 @@ use host_sim::link::endpoint::{Endpoint, RetryPolicy};
 use host_sim::link::line::Line;
 use host_sim::link::loopback::LocalDevice;
 use host_sim::report::{MadeBy, Report, Trip};
-use host_sim::robot::{Footprint, Pose};
 use host_sim::state::{Keeping, State, Store};
 use host_sim::trial::itinerary::{Orders, Pause};
 use host_sim::trial::mission::{Mission, OdometryProfile, explore, explore_kept};
 use host_sim::trial::{Flow, Moment, Progress, Watch};
-use host_sim::world::{Start, World};
+use host_sim::world::World;
 
+use crate::fences;
 use crate::random::Random;
 
 /// Built-in worlds, and kinds of generated ones.
@@ -276,49 +275,20 @@ fn pause(random: &mut Random) -> Pause {
     }
 }
 
-/// Draws a fence with which the robot may stand at the world's first start: bounds in three of four
-/// cases, and up to three triangles.
+/// Draws a fence around the world's first start: bounds in three of four cases, and up to three
+/// triangles.
 fn fence(random: &mut Random, world: &World) -> Fence {
-    let start = world.starts()[0];
-    let pose = Pose {
-        x_m: start.x_m,
-        y_m: start.y_m,
-        yaw_rad: start.yaw_rad,
-        ..Pose::default()
-    };
-    loop {
+    let polygon =
+        |corners: Vec<[f64; 2]>| Polygon::of(&corners).unwrap_or_else(|error| panic!("{error}"));
+    fences::around(world, |start| {
         let is_bound = random.percent(75);
-        let bounds = is_bound.then(|| star(random, &start, 0.0, (2.5, 9.0), 7));
-        let no_go = (0..random.below(4)).map(|_| star(random, &start, 4.0, (0.1, 1.5), 3));
-        let fence = Fence {
+        let bounds = is_bound.then(|| polygon(fences::bounds(random, start)));
+        let no_go = fences::no_go(random, start).into_iter().map(polygon);
+        Fence {
             no_go: no_go.collect(),
             bounds: bounds.into_iter().collect(),
-        };
-        let may_stand = fence.check_start(&Footprint::PIONEER_3AT, &pose);
-        if fence.check().is_ok() && may_stand.is_ok() {
-            return fence;
         }
-    }
-}
-
-/// Draws a star-shaped polygon whose middle is at most `off_m` from the start along each axis.
-fn star(
-    random: &mut Random,
-    start: &Start,
-    off_m: f64,
-    (least_m, most_m): (f64, f64),
-    corners: u32,
-) -> Polygon {
-    let mut off = || off_m * (2.0 * random.unit() - 1.0);
-    let (x, y) = (start.x_m + off(), start.y_m + off());
-    let turn = random.angle();
-    let corner = |k: u32| {
-        let angle = turn + TAU * f64::from(k) / f64::from(corners);
-        let reach = least_m + (most_m - least_m) * random.unit();
-        [x + reach * angle.cos(), y + reach * angle.sin()]
-    };
-    let corners: Vec<[f64; 2]> = (0..corners).map(corner).collect();
-    Polygon::of(&corners).unwrap_or_else(|error| panic!("{error}"))
+    })
 }
 
 /// Keeps the last state that a host kept before it was killed.

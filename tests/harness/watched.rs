@@ -1,12 +1,8 @@
 //! A link with a function that is called after every step. The function reads; it changes no
 //! command.
 
-use fieldline_protocol::message::{
-    Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
-    Packet, Path, ResidualFrontier, Status, Tile,
-};
-use host_sim::link::inside::Inside;
-use host_sim::link::{Link, LinkError, LinkStats};
+use fieldline_protocol::message::{Command, Observation, Reply, Request};
+use host_sim::link::{End, Link, LinkError};
 
 /// A link, and the function called after each step.
 #[derive(Debug)]
@@ -29,68 +25,23 @@ impl<L: Link, F> Link for Watched<L, F>
 where
     F: FnMut(&mut L, &Observation, &Command) -> Result<(), LinkError>,
 {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        self.link.hello()
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        let reply = self.link.ask(request)?;
+        if let (Request::Observation(observation), Reply::Command(command)) = (request, &reply) {
+            (self.look)(&mut self.link, observation, command)?;
+        }
+        Ok(reply)
     }
 
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        self.link.control(control)
-    }
-
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        let command = self.link.observe(observation)?;
-        (self.look)(&mut self.link, observation, &command)?;
-        Ok(command)
-    }
-
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        self.link.tile(x, y)
-    }
-
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
-        self.link.field_row(row)
-    }
-
-    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
-        self.link.frontiers()
-    }
-
-    fn path(&mut self, from: u8) -> Result<Path, LinkError> {
-        self.link.path(from)
-    }
-
-    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
-        self.link.hear(packet)
-    }
-
-    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
-        self.link.say()
-    }
-
-    fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError> {
-        self.link.open_correction(correct)
-    }
-
-    fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
-        self.link.send_tiles(part)
-    }
-
-    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-        self.link.inside()
-    }
-
-    fn stats(&self) -> LinkStats {
-        self.link.stats()
-    }
-
-    fn take_log(&mut self) -> Vec<u8> {
-        self.link.take_log()
+    fn end(&self) -> &dyn End {
+        self.link.end()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use fieldline_protocol::message::{Body, Member, Wanted};
+    use fieldline_protocol::message::{Body, Correct, CorrectedTiles, Member, Packet, Wanted};
+    use host_sim::link::LinkStats;
 
     use super::*;
 
@@ -98,65 +49,35 @@ mod tests {
     struct Marked;
 
     impl Link for Marked {
-        fn hello(&mut self) -> Result<Identity, LinkError> {
-            Ok(Identity::default())
+        fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+            let refused = match request {
+                Request::Observation(_) => return Ok(Reply::Command(Command::default())),
+                Request::Path { from } => format!("road from {from}"),
+                Request::Hear(packet) => format!("packet {}", packet.sequence),
+                Request::Say => "nothing to say".into(),
+                Request::Correct(correct) => format!("correction {}", correct.epoch),
+                Request::Tiles(part) => format!("tile {}", part.first),
+                other => format!("{other:?}"),
+            };
+            Err(LinkError::Refused(refused))
         }
 
-        fn control(&mut self, _: &Control) -> Result<Status, LinkError> {
-            Ok(Status::Paused)
+        fn end(&self) -> &dyn End {
+            self
         }
+    }
 
-        fn observe(&mut self, _: &Observation) -> Result<Command, LinkError> {
-            Ok(Command::default())
-        }
-
-        fn tile(&mut self, _: i16, _: i16) -> Result<Option<Tile>, LinkError> {
-            Ok(None)
-        }
-
-        fn field_row(&mut self, _: u8) -> Result<Option<FieldRow>, LinkError> {
-            Ok(None)
-        }
-
-        fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
-            Ok(Vec::new())
-        }
-
-        fn path(&mut self, from: u8) -> Result<Path, LinkError> {
-            Err(LinkError::Refused(format!("road from {from}")))
-        }
-
-        fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
-            Err(LinkError::Refused(format!("packet {}", packet.sequence)))
-        }
-
-        fn say(&mut self) -> Result<Option<Packet>, LinkError> {
-            Err(LinkError::Refused("nothing to say".into()))
-        }
-
-        fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError> {
-            Err(LinkError::Refused(format!("correction {}", correct.epoch)))
-        }
-
-        fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
-            Err(LinkError::Refused(format!("tile {}", part.first)))
-        }
-
-        fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-            None
-        }
-
+    impl End for Marked {
         fn stats(&self) -> LinkStats {
-            LinkStats::default()
-        }
-
-        fn take_log(&mut self) -> Vec<u8> {
-            vec![1, 2, 3]
+            LinkStats {
+                sent: 123,
+                ..LinkStats::default()
+            }
         }
     }
 
     #[test]
-    fn the_decorator_forwards_the_road_the_packets_and_the_log() {
+    fn the_decorator_forwards_the_road_the_packets_and_the_counters() {
         let mut link = Watched::new(Marked, |_, _, _| Ok(()));
         let refused = LinkError::Refused("road from 7".into());
         assert_eq!(link.path(7), Err(refused));
@@ -182,6 +103,6 @@ mod tests {
             link.send_tiles(&part),
             Err(LinkError::Refused("tile 6".into()))
         );
-        assert_eq!(link.take_log(), [1, 2, 3]);
+        assert_eq!(link.end().stats().sent, 123);
     }
 }

@@ -1,4 +1,4 @@
-//! A baseline as a [`Link`]: only the strategy is its own, the rest is the code of the device.
+//! A baseline as a link: only the strategy is its own, the rest is the code of the device.
 //!
 //! ```text
 //! observation → Map, ObstaclePoints → Chart → Strategy → heading → Drive → command
@@ -14,8 +14,9 @@
 //! Departs from the planner's step in one point: at its goal the robot turns to the left only, and
 //! stands still if that turn is blocked.
 
+mod link;
+
 use fieldline_device::convert;
-use fieldline_device::session::{self, Boot};
 use fieldline_device::{SLOTS, TILES};
 use fieldline_planner::config::{Config, Tuning};
 use fieldline_planner::drive::{CollisionChecker, Drive, Place, SCRATCH_WORDS, SearchQuery};
@@ -27,17 +28,12 @@ use fieldline_planner::math;
 use fieldline_planner::planner::{starts_blocked, tells};
 use fieldline_planner::roadmap::configuration_space::Footprint;
 use fieldline_planner::status::ResidualReason;
-use fieldline_protocol::message::{
-    Command, Control, Correct, CorrectedTiles, CorrectionProgress, Cost, Fault, FieldRow, Finish,
-    Identity, MAX_FRONTIERS, Observation, Packet, Path, Refusal, ResidualFrontier, Start, Status,
-    TILE_SKELETON_BYTES, TILE_STAMPS, Tile,
-};
+use fieldline_protocol::message::{Command, Cost, Fault, Finish, Refusal, Start, Status};
 
 use super::chart::Chart;
 use super::heights::HeightGrid;
 use super::strategy::{Outcome, Scene, Strategy, UnevenScene};
-use crate::link::inside::Inside;
-use crate::link::{Link, LinkError, LinkStats};
+use crate::link::LinkError;
 
 /// Turn rate of a robot that looks around at its goal, radians per second; as in the planner.
 const LOOK_AROUND_RADPS: f32 = 0.6;
@@ -307,113 +303,4 @@ fn standing(status: Status) -> Command {
 
 fn refused(refusal: Refusal) -> LinkError {
     LinkError::Refused(refusal.to_string())
-}
-
-impl<S: Strategy> Link for Session<S> {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        Ok(session::identity(Boot::default(), TILES, SLOTS))
-    }
-
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        self.calls += 1;
-        match control {
-            Control::Start(start) => self.start(start).map_err(refused)?,
-            Control::Reset => {
-                self.config = None;
-                self.status = Status::Idle;
-            }
-            _ if self.config.is_none() => return Err(refused(Refusal::NotStarted)),
-            Control::Pause => self.paused = true,
-            Control::Resume => self.paused = false,
-            Control::Stop => self.status = Status::Finished(Finish::Stopped),
-            Control::Home | Control::GoTo { .. } | Control::Explore | Control::SetHome { .. } => {
-                return Err(refused(Refusal::NotReady));
-            }
-        }
-        Ok(self.status())
-    }
-
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        self.calls += 1;
-        let Some(config) = self.config.take() else {
-            return Err(refused(Refusal::NotStarted));
-        };
-        let command = match convert::input(observation, config.lasers()) {
-            None => standing(Status::Fault(Fault::BadObservation)),
-            Some(input) if matches!(self.status(), Status::Exploring | Status::NoScan) => {
-                self.step(&config, &input)
-            }
-            Some(_) => standing(self.status()),
-        };
-        self.config = Some(config);
-        Ok(command)
-    }
-
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        self.calls += 1;
-        let cells = self.map.shown(x.into(), y.into());
-        Ok(cells.map(|cells| Tile {
-            x,
-            y,
-            cells: cells.into_iter().collect(),
-            skeleton: [0; TILE_SKELETON_BYTES].into_iter().collect(),
-            closed_regions: 0,
-            given_up_regions: 0,
-            visit_stamps: [0; TILE_STAMPS],
-        }))
-    }
-
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
-        self.calls += 1;
-        Ok(self.strategy.field_row(row))
-    }
-
-    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
-        self.calls += 1;
-        let dropped = self.strategy.dropped();
-        Ok(dropped
-            .iter()
-            .take(MAX_FRONTIERS)
-            .map(convert::wire_frontier)
-            .collect())
-    }
-
-    fn path(&mut self, _: u8) -> Result<Path, LinkError> {
-        Ok(Path::default())
-    }
-
-    fn hear(&mut self, _: &Packet) -> Result<(), LinkError> {
-        Err(refused(Refusal::NoTeam))
-    }
-
-    fn open_correction(&mut self, _: &Correct) -> Result<CorrectionProgress, LinkError> {
-        Err(LinkError::Refused("a baseline corrects no map".into()))
-    }
-
-    fn send_tiles(&mut self, _: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
-        Err(LinkError::Refused("a baseline corrects no map".into()))
-    }
-
-    /// A baseline has no team.
-    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
-        Err(refused(Refusal::NoTeam))
-    }
-
-    fn take_log(&mut self) -> Vec<u8> {
-        Vec::new()
-    }
-
-    /// A baseline has neither path nor skeleton, and its map is the host's copy.
-    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-        None
-    }
-
-    /// Counts every call as one frame sent and one received.
-    fn stats(&self) -> LinkStats {
-        LinkStats {
-            sent: self.calls,
-            received: self.calls,
-            ..LinkStats::default()
-        }
-    }
 }

@@ -16,6 +16,7 @@
 //!
 //! Units: metres, radians, seconds; milliseconds where a name says so.
 
+mod judge;
 mod measure;
 mod steps;
 

@@ -12,9 +12,10 @@ use host_sim::sim::Simulator;
 use host_sim::trial::mission::{Mission, OdometryProfile};
 use host_sim::world::World;
 
+use super::common::CommonArgs;
 use super::prepared::await_board;
 use super::robot::RobotArgs;
-use super::values::{seed, start, wait};
+use super::values::{start, wait};
 use super::{note, say};
 
 #[derive(Debug, Args)]
@@ -34,15 +35,6 @@ pub(super) struct BringupArgs {
         allow_negative_numbers = true
     )]
     start: usize,
-    /// Seed of every random number
-    #[arg(
-        long,
-        value_name = "N",
-        default_value = "0",
-        value_parser = seed,
-        allow_negative_numbers = true
-    )]
-    seed: u64,
     /// What is wired wrongly, as of explore
     #[arg(long, value_name = "SPEC")]
     miswire: Option<Miswiring>,
@@ -51,15 +43,14 @@ pub(super) struct BringupArgs {
     wait: Duration,
     #[command(flatten)]
     robot: RobotArgs,
-    /// Print one JSON object a step
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    common: CommonArgs,
 }
 
 /// Makes the steps; returns true if all passed.
 pub(super) fn run(args: &BringupArgs) -> Result<bool> {
     let mission = args.robot.applied(Mission {
-        seed: args.seed,
+        seed: args.common.seed,
         start: args.start,
         odometry: OdometryProfile::Noisy,
         miswiring: args.miswire.unwrap_or_default(),
@@ -83,7 +74,7 @@ pub(super) fn run(args: &BringupArgs) -> Result<bool> {
     }
     let mut told = Ok(());
     let passed = bringup::run(link.as_mut(), &mut robot, &start, |step| {
-        let line = if args.json {
+        let line = if args.common.json {
             json(step)
         } else {
             Ok(text(step))

@@ -9,9 +9,11 @@
 mod args;
 mod bringup;
 mod campaign;
+mod common;
 mod explore;
 mod live;
 mod made_by;
+mod mission;
 mod mission_file;
 mod pictures;
 mod prepared;

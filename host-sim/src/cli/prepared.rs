@@ -22,7 +22,6 @@ use host_sim::trial::{Record, Watch};
 use host_sim::world::World;
 
 use super::args::ExploreArgs;
-use super::explore;
 use super::mission_file;
 use super::recording::Recorder;
 use super::strategies;
@@ -48,12 +47,11 @@ impl Prepared {
             args.patrol_for,
             args.tdbvp_impatience.is_some(),
         )?;
-        let has_space =
-            args.until.is_some() || args.area.is_some() || args.sbpf_impatience.is_some();
+        let has_space = args.space.is_given() || args.area.is_some();
         strategies::check_space(&args.strategy, has_space)?;
         let has_relaxation = args.bvp_sweeps.is_some() || args.bvp_precision.is_some();
         strategies::check_relaxation(&args.strategy, has_relaxation)?;
-        let mission = explore::mission(args, &link)?;
+        let mission = super::mission::mission(args, &link)?;
         check_reference(&mission)?;
         check_team(args)?;
         Ok(Self {
@@ -89,8 +87,8 @@ impl Prepared {
                 .fault
                 .as_ref()
                 .map_or_else(Default::default, |f| f.faults),
-            seed: args.seed,
-            real_time: args.realtime,
+            seed: args.common.seed,
+            real_time: args.pace.realtime,
             tuning: args.robot.tuning(link)?,
         };
         note_build(link);

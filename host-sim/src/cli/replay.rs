@@ -23,10 +23,11 @@ use host_sim::slam::SlamPlace;
 use host_sim::slam::particles::{self, ParticleSpec};
 use host_sim::trial::wording;
 
+use super::common::{CommonArgs, FolderArgs};
 use super::progress::Interrupt;
 use super::recording;
 use super::robot::{self as robots, TuneArgs, robot};
-use super::values::{seed, slam_place};
+use super::values::slam_place;
 use super::{made_by, note, note_build, say};
 
 #[derive(Clone, Debug, Args)]
@@ -65,15 +66,6 @@ pub(super) struct ReplayArgs {
         allow_hyphen_values = true
     )]
     laser: Option<Sweep>,
-    /// Seed of the drift
-    #[arg(
-        long,
-        value_name = "N",
-        default_value = "0",
-        value_parser = seed,
-        allow_negative_numbers = true
-    )]
-    seed: u64,
     /// Close loops by a pose graph: off, or host, beside the device
     #[arg(long, value_name = "WHERE", default_value = "off", value_parser = slam_place)]
     slam: SlamPlace,
@@ -88,17 +80,12 @@ pub(super) struct ReplayArgs {
     /// direct, loopback, qemu or serial:DEVICE[@BAUD] [default: loopback]
     #[arg(long)]
     link: Option<LinkSpec>,
-    /// Folder of the replay [default: out/LOG-replay-SEED]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Replace the run of the folder --out, though it was made with other options
-    #[arg(long)]
-    force: bool,
+    #[command(flatten)]
+    folder: FolderArgs,
     #[command(flatten)]
     tune: TuneArgs,
-    /// Print only the figures, one JSON object
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    common: CommonArgs,
 }
 
 /// Variances of the random walk of wheels that nothing is known of, as a multiple of the usual
@@ -118,13 +105,15 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     let link = args.tune.link(args.link.as_ref()).cloned();
     let link = link.unwrap_or_default();
     let tuning = args.tune.tuning(&link)?;
-    let folder = args.out.clone().unwrap_or_else(|| usual_folder(args));
+    let folder = args
+        .folder
+        .out
+        .clone()
+        .unwrap_or_else(|| usual_folder(args));
     let interrupt = Interrupt::listen()?;
     let robot = args.robot.as_ref().map_or("", |robot| &robot.name);
     let made_by = made_by::of_run(robot, &[]);
-    if args.out.is_some() && !args.force {
-        made_by.may_replace(&folder).map_err(Error::msg)?;
-    }
+    args.folder.check(&folder, &made_by)?;
     folder::make(&folder)?;
     note_build(&link);
     let replayed = input.replay(&link, tuning, &interrupt)?;
@@ -132,7 +121,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
     let report = ReplayReport {
         log: args.log.display().to_string(),
         link: link.to_string(),
-        seed: args.seed,
+        seed: args.common.seed,
         degrade: args.degrade,
         steps: input.log.scans.len(),
         relations: errors.as_deref().and_then(spread),
@@ -162,7 +151,7 @@ fn run_again(args: &ReplayArgs) -> Result<bool> {
         ("--slam", args.slam != SlamPlace::Off),
         ("--slam-noise", args.slam_noise.is_some()),
         ("--particles", args.particles.is_some()),
-        ("--out", args.out.is_some()),
+        ("--out", args.folder.out.is_some()),
     ];
     if let Some((name, _)) = others.iter().find(|(_, is_given)| *is_given) {
         bail!(
@@ -177,7 +166,7 @@ fn run_again(args: &ReplayArgs) -> Result<bool> {
         tuning: args.tune.tuning(&link)?,
         ..Options::default()
     };
-    recording::replay(&args.log, &link, &options, args.json)
+    recording::replay(&args.log, &link, &options, args.common.json)
 }
 
 /// Writes the files of a replay, and says how it went.
@@ -196,7 +185,7 @@ fn write(
         relations,
     };
     files.write(folder)?;
-    say(&if args.json {
+    say(&if args.common.json {
         report.to_json_line()
     } else {
         report.to_text()
@@ -231,7 +220,7 @@ impl<'a> Input<'a> {
         let truth = truth.map(|file| with_times(args, file, &own)).transpose()?;
         let noise = args.slam_noise.or(args.degrade).unwrap_or(UNKNOWN_WHEELS);
         Ok(Self {
-            odometry: run::odometry(&log.scans, args.degrade, args.seed),
+            odometry: run::odometry(&log.scans, args.degrade, args.common.seed),
             args,
             log,
             laser,
@@ -278,7 +267,7 @@ impl<'a> Input<'a> {
         let wheels = OdometryNoise::default().times(spec.noise.unwrap_or(self.noise));
         let observations = run::observations(laser, scans, &self.odometry);
         let told = (laser.announced(), wheels);
-        let poses = particles::path(spec, told, &observations, self.args.seed);
+        let poses = particles::path(spec, told, &observations, self.args.common.seed);
         ParticlePath {
             filter: spec.to_string(),
             relations: self.errors(&poses).as_deref().and_then(spread),
@@ -362,7 +351,7 @@ fn with_times(args: &ReplayArgs, file: &Path, own: &[(f64, Pose)]) -> Result<Vec
 fn usual_folder(args: &ReplayArgs) -> PathBuf {
     let name = args.log.file_name().unwrap_or_default().to_string_lossy();
     let stem = name.split('.').next().unwrap_or_default();
-    Path::new("out").join(format!("{stem}-replay-{}", args.seed))
+    Path::new("out").join(format!("{stem}-replay-{}", args.common.seed))
 }
 
 fn finite(text: &str) -> Result<f64, String> {

@@ -40,10 +40,10 @@ pub(super) fn state(folder: &Path, args: &ExploreArgs, made_by: &MadeBy) -> Resu
     let file = folder.join(NAME);
     may_resume(&state, made_by)
         .map_err(|reason| anyhow!("--resume {}: {reason}", file.display()))?;
-    if args.time_limit <= state.time_ms {
+    if args.pace.time_limit <= state.time_ms {
         bail!(
             "--time-limit {} is over: {} is at {} s; allow more",
-            f64::from(args.time_limit) / 1000.0,
+            f64::from(args.pace.time_limit) / 1000.0,
             file.display(),
             f64::from(state.time_ms) / 1000.0
         );

@@ -1,8 +1,8 @@
 //! `host-sim team`: several robots explore one world; writes a folder and a report.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use anyhow::{Context as _, Error, Result, bail};
+use anyhow::{Context as _, Result, bail};
 use clap::Args;
 
 use host_sim::baseline::bvp_papers::Relaxation;
@@ -20,12 +20,14 @@ use host_sim::trial::team::{
 };
 use host_sim::world::World;
 
-use super::args::{ExploreArgs, GroundArg, Impatience, OdometryArg};
-use super::explore::{mission, with_start};
+use super::args::{ExploreArgs, GroundArg, OdometryArg};
+use super::common::{CommonArgs, FolderArgs, PaceArgs, SpaceArgs};
+use super::explore::with_start;
+use super::mission::mission;
 use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
 use super::robot::RobotArgs;
-use super::values::{impatience, seed, slam_place, start, time_limit, until};
+use super::values::{slam_place, start};
 use super::{made_by, note, note_build, say, strategies};
 
 #[derive(Clone, Debug, Args)]
@@ -71,26 +73,12 @@ pub(super) struct TeamArgs {
         allow_hyphen_values = true
     )]
     join: Vec<Appointment>,
-    /// Share of the area whose coverage ends a robot's run, above 0, at most 1; for sbpf and esbpf
-    #[arg(long, value_name = "SHARE", value_parser = until)]
-    until: Option<u16>,
-    /// Simulated seconds without a newly covered cell after which sbpf or esbpf follows a path to
-    /// a frontier, or never [default: never for sbpf, 5 for esbpf]
-    #[arg(long, value_name = "S|never", value_parser = impatience, allow_negative_numbers = true)]
-    sbpf_impatience: Option<Impatience>,
+    #[command(flatten)]
+    space: SpaceArgs,
     /// Link of all robots, or a list with the link of each, as in direct,direct,qemu [default:
     /// loopback; direct for baselines]
     #[arg(long, value_name = "LINK,LINK", value_delimiter = ',')]
     link: Vec<LinkSpec>,
-    /// Seed of every random number of the run
-    #[arg(
-        long,
-        value_name = "N",
-        default_value = "0",
-        value_parser = seed,
-        allow_negative_numbers = true
-    )]
-    seed: u64,
     /// Index of the world's start pose for robot 0, from 0; WORLD@N comes first
     #[arg(
         long,
@@ -110,29 +98,14 @@ pub(super) struct TeamArgs {
     /// Where loops are closed and the maps corrected, robot by robot: off, host
     #[arg(long, value_name = "WHERE", default_value = "off", value_parser = slam_place)]
     slam: SlamPlace,
-    /// Simulated seconds after which the run ends
-    #[arg(
-        long,
-        value_name = "S",
-        default_value = "3600",
-        value_parser = time_limit,
-        allow_negative_numbers = true
-    )]
-    time_limit: u32,
-    /// Folder of the run [default: out/WORLD-STRATEGY-team-ROBOTS-SEED]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Replace the run of the folder --out, though it was made with other options
-    #[arg(long)]
-    force: bool,
-    /// Run no faster than real time
-    #[arg(long)]
-    realtime: bool,
+    #[command(flatten)]
+    pace: PaceArgs,
+    #[command(flatten)]
+    folder: FolderArgs,
     #[command(flatten)]
     robot: RobotArgs,
-    /// Print only the report, one JSON object
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    common: CommonArgs,
 }
 
 /// Parses the number of robots.
@@ -149,8 +122,7 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
     if args.slam != SlamPlace::Off && args.ground == Some(GroundArg::Uneven) {
         bail!("--slam corrects a team's maps on flat ground; say --ground flat, or --slam off");
     }
-    let has_space = args.until.is_some() || args.sbpf_impatience.is_some();
-    strategies::check_space(&args.strategy, has_space)?;
+    strategies::check_space(&args.strategy, args.space.is_given())?;
     let (name, at) = with_start(&args.world);
     let world = World::open(name)?;
     let team = TeamMission {
@@ -167,16 +139,14 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
         },
     };
     starts(&team, &world)?;
-    let folder = args.out.clone().unwrap_or_else(|| {
+    let folder = args.folder.out.clone().unwrap_or_else(|| {
         let (world, strategy) = (world.name().replace(':', "-"), &args.strategy);
-        let (robots, seed) = (args.robots, args.seed);
+        let (robots, seed) = (args.robots, args.common.seed);
         Path::new("out").join(format!("{world}-{strategy}-team-{robots}-{seed}"))
     });
     let own = [("world", args.world.clone())];
     let made_by = made_by::of_run(&team.mission.robot, &own);
-    if args.out.is_some() && !args.force {
-        made_by.may_replace(&folder).map_err(Error::msg)?;
-    }
+    args.folder.check(&folder, &made_by)?;
     folder::prepare(&folder)?;
     for text in world.notes() {
         note(&format!("host-sim: {}: {text}", world.name()));
@@ -186,7 +156,7 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
     }
     let mut planners = open(args, &links)?;
     let interrupt = Interrupt::listen()?;
-    let mut onlooker = Onlooker::new(world.name(), args.realtime.then_some(1.0), interrupt);
+    let mut onlooker = Onlooker::new(world.name(), args.pace.realtime.then_some(1.0), interrupt);
     let result = explore(&team, &world, &mut planners, &mut onlooker);
     onlooker.finish();
     let (mut report, record) = match result {
@@ -210,14 +180,13 @@ fn common(args: &TeamArgs, start: usize) -> ExploreArgs {
     ExploreArgs {
         strategy: args.strategy.clone(),
         ground: args.ground,
-        seed: args.seed,
         start,
         odometry: Some(args.odometry),
-        time_limit: args.time_limit,
-        until: args.until,
-        sbpf_impatience: args.sbpf_impatience,
+        pace: args.pace.clone(),
+        space: args.space.clone(),
         slam: args.slam,
         robot: args.robot.clone(),
+        common: args.common.clone(),
         ..ExploreArgs::default()
     }
 }
@@ -256,8 +225,8 @@ fn open(args: &TeamArgs, links: &[LinkSpec]) -> Result<Vec<Box<dyn Link>>> {
     links.iter().for_each(note_build);
     let open = |link: &LinkSpec| {
         let options = Options {
-            seed: args.seed,
-            real_time: args.realtime,
+            seed: args.common.seed,
+            real_time: args.pace.realtime,
             tuning: args.robot.tuning(link)?,
             ..Options::default()
         };
@@ -294,7 +263,7 @@ fn write(folder: &Path, world: &World, report: &TeamReport, record: &TeamRecord)
 
 /// Prints the report on standard output, and advice on standard error.
 fn print(args: &TeamArgs, report: &TeamReport, record: &TeamRecord, folder: &Path) -> Result<()> {
-    say(&if args.json {
+    say(&if args.common.json {
         report.to_json_line()
     } else {
         report.to_text()

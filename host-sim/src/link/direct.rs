@@ -3,13 +3,10 @@
 use fieldline_device::session::{self, Boot};
 use fieldline_device::{Memory, Pilot, SLOTS, State, TILES};
 use fieldline_planner::{Tuning, Workspace};
-use fieldline_protocol::message::{
-    Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
-    Packet, Path, Refusal, ResidualFrontier, Status, Tile,
-};
+use fieldline_protocol::message::{Refusal, Reply, Request};
 
 use super::inside::{Inside, Look};
-use super::{Link, LinkError, LinkStats};
+use super::{End, Link, LinkError, LinkStats};
 
 /// A pilot and its memory.
 #[derive(Debug)]
@@ -69,67 +66,48 @@ impl Direct {
     }
 }
 
-fn refused(refusal: Refusal) -> LinkError {
-    LinkError::Refused(refusal.to_string())
+impl Link for Direct {
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        if matches!(request, Request::Hello { .. }) {
+            let identity = session::identity(Boot::default(), TILES, SLOTS);
+            return Ok(Reply::Hello(identity));
+        }
+        self.with(|pilot, memory| answer(pilot, memory, request))
+            .map_err(|refusal| LinkError::Refused(refusal.to_string()))
+    }
+
+    fn end(&self) -> &dyn End {
+        self
+    }
 }
 
-impl Link for Direct {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        Ok(session::identity(Boot::default(), TILES, SLOTS))
-    }
+/// Answers a request that is no hello.
+fn answer(
+    pilot: &mut Pilot,
+    memory: &mut Memory<'_, TILES, SLOTS>,
+    request: &Request,
+) -> Result<Reply, Refusal> {
+    Ok(match request {
+        Request::Control(control) => Reply::Control(pilot.control(memory, control)?),
+        Request::Observation(observation) => {
+            Reply::Command(pilot.observe(memory, observation, &mut ())?)
+        }
+        Request::Tile { x, y } => Reply::Tile(Pilot::tile(memory, *x, *y)),
+        Request::FieldRow { row } => Reply::FieldRow(Pilot::field_row(memory, *row)),
+        Request::Frontiers => Reply::Frontiers(Pilot::frontiers(memory)),
+        Request::Path { from } => Reply::Path(Pilot::path(memory, *from)),
+        Request::Hear(packet) => {
+            pilot.hear(memory, packet)?;
+            Reply::Heard
+        }
+        Request::Say => Reply::Say(pilot.say(memory)?),
+        Request::Correct(correct) => Reply::Corrected(pilot.correct(memory, correct)?),
+        Request::Tiles(part) => Reply::Corrected(pilot.tiles(memory, part)?),
+        Request::Hello { .. } => return Err(Refusal::OutOfOrder),
+    })
+}
 
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        self.with(|pilot, memory| pilot.control(memory, control))
-            .map_err(refused)
-    }
-
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        self.with(|pilot, memory| pilot.observe(memory, observation, &mut ()))
-            .map_err(refused)
-    }
-
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        Ok(self.with(|_, memory| Pilot::tile(memory, x, y)))
-    }
-
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
-        Ok(self.with(|_, memory| Pilot::field_row(memory, row)))
-    }
-
-    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
-        Ok(self.with(|_, memory| Pilot::frontiers(memory).iter().copied().collect()))
-    }
-
-    fn path(&mut self, from: u8) -> Result<Path, LinkError> {
-        Ok(self.with(|_, memory| Pilot::path(memory, from)))
-    }
-
-    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
-        self.with(|pilot, memory| pilot.hear(memory, packet))
-            .map_err(refused)
-    }
-
-    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
-        self.with(Pilot::say).map_err(refused)
-    }
-
-    fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError> {
-        self.with(|pilot, memory| pilot.correct(memory, correct))
-            .map_err(refused)
-    }
-
-    fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
-        self.with(|pilot, memory| pilot.tiles(memory, part))
-            .map_err(refused)
-    }
-
-    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-        Some(Box::new(Look {
-            state: &*self.state,
-            workspace: &self.workspace,
-        }))
-    }
-
+impl End for Direct {
     /// Every call counts as one frame sent and one received.
     fn stats(&self) -> LinkStats {
         LinkStats {
@@ -139,8 +117,10 @@ impl Link for Direct {
         }
     }
 
-    /// The pilot keeps no log.
-    fn take_log(&mut self) -> Vec<u8> {
-        Vec::new()
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        Some(Box::new(Look {
+            state: &*self.state,
+            workspace: &self.workspace,
+        }))
     }
 }

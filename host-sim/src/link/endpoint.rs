@@ -12,15 +12,12 @@ use fieldline_protocol::check::Kind;
 use fieldline_protocol::frame::{
     BodyError, MAX_REPLY_FRAME, MAX_REQUEST_FRAME, Receiver, Side, encode_request,
 };
-use fieldline_protocol::message::{
-    Command, Control, Correct, CorrectedTiles, CorrectionProgress, Counters, FieldRow, Identity,
-    Observation, Packet, Path, Refusal, Reply, Request, ResidualFrontier, Status, Tile,
-};
+use fieldline_protocol::message::{Control, Counters, Identity, Refusal, Reply, Request};
 use fieldline_protocol::{SCHEMA, VERSION};
 
 use super::inside::Inside;
 use super::line::Line;
-use super::{Link, LinkError, LinkStats};
+use super::{End, Link, LinkError, LinkStats};
 
 /// How long to wait for an answer, and how often to ask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,11 +123,41 @@ impl<L: Line> Endpoint<L> {
         self.line.now()
     }
 
+    /// Returns the device's log bytes (defmt) since the last call; empty if it has no log.
+    pub fn take_log(&mut self) -> Vec<u8> {
+        core::mem::take(&mut self.log)
+    }
+
+    /// Asks who the device is. The request carries this host's number.
+    fn greet(&mut self) -> Result<Reply, LinkError> {
+        let request = Request::Hello {
+            version: VERSION,
+            schema: SCHEMA,
+            nonce: self.nonce,
+        };
+        let reply = match self.repeat(&request, self.policy.for_hello()) {
+            Err(LinkError::Silent) if self.bytes > 0 && self.receiver.tally().received == 0 => {
+                return Err(LinkError::Incompatible(format!(
+                    "{} bytes came but no Fieldline frame; \
+                     check the device, the baud rate and the image's schema",
+                    self.bytes
+                )));
+            }
+            reply => reply?,
+        };
+        if let (Reply::Hello(identity), None) = (&reply, self.boots) {
+            self.boots = Some(identity.boots);
+            (self.before, self.device) = (identity.counters, identity.counters);
+        }
+        Ok(reply)
+    }
+
+    /// Sends a request that is no hello, and greets a device that does not know this host before.
     fn call(&mut self, request: &Request) -> Result<Reply, LinkError> {
         if self.boots.is_none() {
             self.hello()?;
         }
-        let reply = self.ask(request, self.policy);
+        let reply = self.repeat(request, self.policy);
         if reply == Err(LinkError::Reset) {
             // Whoever goes on greets the device again.
             (self.boots, self.started) = (None, false);
@@ -139,7 +166,7 @@ impl<L: Line> Endpoint<L> {
     }
 
     /// Sends a request until it is answered.
-    fn ask(&mut self, request: &Request, policy: RetryPolicy) -> Result<Reply, LinkError> {
+    fn repeat(&mut self, request: &Request, policy: RetryPolicy) -> Result<Reply, LinkError> {
         self.sequence = self.sequence.wrapping_add(1).max(1);
         let mut frame = [0; 1 + MAX_REQUEST_FRAME];
         // A zero before a repeated frame ends any noise on the line.
@@ -227,123 +254,30 @@ impl<L: Line> Endpoint<L> {
     }
 }
 
-fn unexpected(what: &str) -> LinkError {
-    LinkError::Incompatible(format!(
-        "the device answered {what} with another kind of reply; \
-         build both ends from the same source"
-    ))
+impl<L: Line> Link for Endpoint<L> {
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        if matches!(request, Request::Hello { .. }) {
+            return self.greet();
+        }
+        let reply = self.call(request)?;
+        match (request, &reply) {
+            // This reboot was requested, and afterwards the device does not know this host.
+            (Request::Control(Control::Reset), Reply::Control(_)) => {
+                (self.boots, self.started) = (None, false);
+            }
+            (Request::Control(Control::Start(_)), Reply::Control(_)) => self.started = true,
+            (_, Reply::Command(command)) => self.device = command.counters,
+            _ => {}
+        }
+        Ok(reply)
+    }
+
+    fn end(&self) -> &dyn End {
+        self
+    }
 }
 
-impl<L: Line> Link for Endpoint<L> {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        let request = Request::Hello {
-            version: VERSION,
-            schema: SCHEMA,
-            nonce: self.nonce,
-        };
-        let identity = match self.ask(&request, self.policy.for_hello()) {
-            Ok(Reply::Hello(identity)) => identity,
-            Ok(_) => return Err(unexpected("a hello")),
-            Err(LinkError::Silent) if self.bytes > 0 && self.receiver.tally().received == 0 => {
-                return Err(LinkError::Incompatible(format!(
-                    "{} bytes came but no Fieldline frame; \
-                     check the device, the baud rate and the image's schema",
-                    self.bytes
-                )));
-            }
-            Err(error) => return Err(error),
-        };
-        if self.boots.is_none() {
-            self.boots = Some(identity.boots);
-            (self.before, self.device) = (identity.counters, identity.counters);
-        }
-        Ok(identity)
-    }
-
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        match self.call(&Request::Control(control.clone()))? {
-            Reply::Control(status) => {
-                self.started |= matches!(control, Control::Start(_));
-                if matches!(control, Control::Reset) {
-                    // This reboot was requested, and afterwards the device does not know this host.
-                    (self.boots, self.started) = (None, false);
-                }
-                Ok(status)
-            }
-            _ => Err(unexpected("a control request")),
-        }
-    }
-
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        match self.call(&Request::Observation(observation.clone()))? {
-            Reply::Command(command) => {
-                self.device = command.counters;
-                Ok(command)
-            }
-            _ => Err(unexpected("an observation")),
-        }
-    }
-
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        match self.call(&Request::Tile { x, y })? {
-            Reply::Tile(tile) => Ok(tile),
-            _ => Err(unexpected("a request for a tile")),
-        }
-    }
-
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
-        match self.call(&Request::FieldRow { row })? {
-            Reply::FieldRow(row) => Ok(row),
-            _ => Err(unexpected("a request for a field row")),
-        }
-    }
-
-    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
-        match self.call(&Request::Frontiers)? {
-            Reply::Frontiers(frontiers) => Ok(frontiers.iter().copied().collect()),
-            _ => Err(unexpected("a request for frontiers")),
-        }
-    }
-
-    fn path(&mut self, from: u8) -> Result<Path, LinkError> {
-        match self.call(&Request::Path { from })? {
-            Reply::Path(path) => Ok(path),
-            _ => Err(unexpected("a request for the road")),
-        }
-    }
-
-    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
-        match self.call(&Request::Hear(packet.clone()))? {
-            Reply::Heard => Ok(()),
-            _ => Err(unexpected("a packet")),
-        }
-    }
-
-    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
-        match self.call(&Request::Say)? {
-            Reply::Say(packet) => Ok(packet),
-            _ => Err(unexpected("a request for a packet")),
-        }
-    }
-
-    fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError> {
-        match self.call(&Request::Correct(*correct))? {
-            Reply::Corrected(progress) => Ok(progress),
-            _ => Err(unexpected("a correction")),
-        }
-    }
-
-    fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
-        match self.call(&Request::Tiles(part.clone()))? {
-            Reply::Corrected(progress) => Ok(progress),
-            _ => Err(unexpected("a part of a correction")),
-        }
-    }
-
-    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-        self.line.inside()
-    }
-
+impl<L: Line> End for Endpoint<L> {
     fn stats(&self) -> LinkStats {
         let tally = self.receiver.tally();
         let there = |now: u32, before: u32| u64::from(now.wrapping_sub(before));
@@ -358,7 +292,7 @@ impl<L: Line> Link for Endpoint<L> {
         }
     }
 
-    fn take_log(&mut self) -> Vec<u8> {
-        core::mem::take(&mut self.log)
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        self.line.inside()
     }
 }

@@ -134,16 +134,16 @@ mod tests {
             let command = link.observe(&sim.observe()).unwrap();
             sim.drive(Some(command.velocity));
         }
-        let sent = link.stats().sent;
+        let sent = link.end().stats().sent;
         let (tiles, path, goal) = {
-            let inside = link.inside().expect("a device in this process");
+            let inside = link.end().inside().expect("a device in this process");
             assert!(inside.edits() > 0);
             let tiles: Vec<_> = (inside.tiles().into_iter())
                 .map(|key| (key, inside.cells(key), inside.skeleton(key)))
                 .collect();
             (tiles, inside.path(), inside.local_goal())
         };
-        assert_eq!(link.stats().sent, sent, "a look sends nothing");
+        assert_eq!(link.end().stats().sent, sent, "a look sends nothing");
         assert!(tiles.len() > 3 && !goal.is_empty());
         for ((x, y), cells, skeleton) in tiles {
             let Some(told) = link.tile(x, y).unwrap() else {

@@ -16,8 +16,9 @@ use thiserror::Error;
 
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
-    Packet, Path, ResidualFrontier, Status, Tile,
+    Packet, Path, Reply, Request, ResidualFrontier, Status, Tile,
 };
+use fieldline_protocol::{SCHEMA, VERSION};
 use serde::{Deserialize, Serialize};
 
 use correction::MapCorrection;
@@ -95,67 +96,146 @@ pub struct LinkStats {
 
 /// A link: direct call, loopback bytes, QEMU, serial port.
 ///
-/// No method has a default body but [`Link::correct`], which calls others: the compiler then finds
-/// a decorator that forgets to forward one.
+/// A link answers requests. A link around another one changes how it asks, and names the other's
+/// end.
 pub trait Link {
-    /// Asks for the device's identity.
-    ///
-    /// # Errors
-    /// As [`LinkError`].
-    fn hello(&mut self) -> Result<Identity, LinkError>;
-    /// Changes the session's state.
-    ///
-    /// # Errors
-    /// As [`LinkError`].
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError>;
-    /// Makes one step: sends an observation and returns the command.
+    /// Sends a request and returns its reply. A refusal is an error.
     ///
     /// # Errors
     /// As [`LinkError`]. On [`LinkError::Silent`], robot time of up to the device's stale limit may
     /// have passed.
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError>;
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError>;
+    /// Returns the end that answers.
+    fn end(&self) -> &dyn End;
+
+    /// Asks for the device's identity.
+    ///
+    /// # Errors
+    /// As [`LinkError`].
+    fn hello(&mut self) -> Result<Identity, LinkError> {
+        let request = Request::Hello {
+            version: VERSION,
+            schema: SCHEMA,
+            nonce: 0,
+        };
+        match self.ask(&request)? {
+            Reply::Hello(identity) => Ok(identity),
+            _ => Err(unexpected("a hello")),
+        }
+    }
+
+    /// Changes the session's state.
+    ///
+    /// # Errors
+    /// As [`LinkError`].
+    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
+        match self.ask(&Request::Control(control.clone()))? {
+            Reply::Control(status) => Ok(status),
+            _ => Err(unexpected("a control request")),
+        }
+    }
+
+    /// Makes one step: sends an observation and returns the command.
+    ///
+    /// # Errors
+    /// As [`Link::ask`].
+    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
+        match self.ask(&Request::Observation(observation.clone()))? {
+            Reply::Command(command) => Ok(command),
+            _ => Err(unexpected("an observation")),
+        }
+    }
+
     /// Reads one map tile; `None` if the map does not have it.
     ///
     /// # Errors
     /// As [`LinkError`].
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError>;
+    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
+        match self.ask(&Request::Tile { x, y })? {
+            Reply::Tile(tile) => Ok(tile),
+            _ => Err(unexpected("a request for a tile")),
+        }
+    }
+
     /// Reads one row of the last field; `None` if there is no field.
     ///
     /// # Errors
     /// As [`LinkError`].
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError>;
+    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
+        match self.ask(&Request::FieldRow { row })? {
+            Reply::FieldRow(row) => Ok(row),
+            _ => Err(unexpected("a request for a field row")),
+        }
+    }
+
     /// Reads the residual frontiers.
     ///
     /// # Errors
     /// As [`LinkError`].
-    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError>;
+    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
+        match self.ask(&Request::Frontiers)? {
+            Reply::Frontiers(frontiers) => Ok(frontiers.iter().copied().collect()),
+            _ => Err(unexpected("a request for frontiers")),
+        }
+    }
+
     /// Reads the path to the planner's goal, without its first `from` cells; empty if the planner
     /// has none.
     ///
     /// # Errors
     /// As [`LinkError`].
-    fn path(&mut self, from: u8) -> Result<Path, LinkError>;
+    fn path(&mut self, from: u8) -> Result<Path, LinkError> {
+        match self.ask(&Request::Path { from })? {
+            Reply::Path(path) => Ok(path),
+            _ => Err(unexpected("a request for the road")),
+        }
+    }
+
     /// Passes on a packet that another robot of the team said.
     ///
     /// # Errors
     /// As [`LinkError`]; [`LinkError::Refused`] in a session without a team.
-    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError>;
+    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
+        match self.ask(&Request::Hear(packet.clone()))? {
+            Reply::Heard => Ok(()),
+            _ => Err(unexpected("a packet")),
+        }
+    }
+
     /// Asks for the next packet for the team. Call this after each observation until it returns
     /// `None`: a planner says a beacon and at most three other packets in a step.
     ///
     /// # Errors
     /// As [`Link::hear`].
-    fn say(&mut self) -> Result<Option<Packet>, LinkError>;
+    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
+        match self.ask(&Request::Say)? {
+            Reply::Say(packet) => Ok(packet),
+            _ => Err(unexpected("a request for a packet")),
+        }
+    }
+
     /// Opens a correction of the map.
     ///
     /// # Errors
     /// As [`LinkError`]; [`LinkError::Refused`] by a baseline.
-    fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError>;
+    fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError> {
+        match self.ask(&Request::Correct(*correct))? {
+            Reply::Corrected(progress) => Ok(progress),
+            _ => Err(unexpected("a correction")),
+        }
+    }
+
     /// Sends a part of the open correction.
     ///
     /// # Errors
     /// As [`Link::open_correction`].
-    fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError>;
+    fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
+        match self.ask(&Request::Tiles(part.clone()))? {
+            Reply::Corrected(progress) => Ok(progress),
+            _ => Err(unexpected("a part of a correction")),
+        }
+    }
+
     /// Corrects the map. The robot stands until this returns.
     ///
     /// # Errors
@@ -175,10 +255,21 @@ pub trait Link {
         }
         Ok(())
     }
-    /// Looks into the device, if it lives in this process.
-    fn inside(&self) -> Option<Box<dyn Inside + '_>>;
-    /// The counters since the hello.
+}
+
+/// The end of a link that answers: what can be read of it without a request.
+pub trait End {
+    /// Returns the counters since the hello.
     fn stats(&self) -> LinkStats;
-    /// Returns the device's log bytes (defmt) since the last call; empty if it has no log.
-    fn take_log(&mut self) -> Vec<u8>;
+    /// Looks into the device, if it lives in this process.
+    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        None
+    }
+}
+
+fn unexpected(what: &str) -> LinkError {
+    LinkError::Incompatible(format!(
+        "the device answered {what} with another kind of reply; \
+         build both ends from the same source"
+    ))
 }

@@ -29,16 +29,12 @@ use core::time::Duration;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
-use fieldline_protocol::message::{
-    Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Member,
-    Observation, Packet, Path, ResidualFrontier, Status, Team, Tile,
-};
+use fieldline_protocol::message::{Control, Member, Packet, Reply, Request, Team};
 use fieldline_protocol::packet::decode_packet;
 use serde::{Deserialize, Serialize};
 
-use crate::link::inside::Inside;
 use crate::link::said::Said;
-use crate::link::{Link, LinkError, LinkStats};
+use crate::link::{End, Link, LinkError};
 use carrier::{Arrived, Carrier};
 use envelope::{Heard, Key, Kind, Letter, Refused};
 use lockstep::Lockstep;
@@ -229,72 +225,29 @@ impl Networked {
 }
 
 impl Link for Networked {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        self.link.hello()
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        match request {
+            // A session starts as a member of the team.
+            Request::Control(Control::Start(start)) => {
+                let mut start = start.clone();
+                start.team = Some(Team {
+                    member: self.member,
+                    ..start.team.unwrap_or_default()
+                });
+                self.link.ask(&Request::Control(Control::Start(start)))
+            }
+            Request::Observation(_) => {
+                self.keep_together()?;
+                let reply = self.link.ask(request)?;
+                self.speak()?;
+                Ok(reply)
+            }
+            _ => self.link.ask(request),
+        }
     }
 
-    /// A session starts as a member of the team.
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        let Control::Start(start) = control else {
-            return self.link.control(control);
-        };
-        let mut start = start.clone();
-        start.team = Some(Team {
-            member: self.member,
-            ..start.team.unwrap_or_default()
-        });
-        self.link.control(&Control::Start(start))
-    }
-
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        self.keep_together()?;
-        let command = self.link.observe(observation)?;
-        self.speak()?;
-        Ok(command)
-    }
-
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        self.link.tile(x, y)
-    }
-
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
-        self.link.field_row(row)
-    }
-
-    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
-        self.link.frontiers()
-    }
-
-    fn path(&mut self, from: u8) -> Result<Path, LinkError> {
-        self.link.path(from)
-    }
-
-    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
-        self.link.hear(packet)
-    }
-
-    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
-        self.link.say()
-    }
-
-    fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError> {
-        self.link.open_correction(correct)
-    }
-
-    fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
-        self.link.send_tiles(part)
-    }
-
-    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-        self.link.inside()
-    }
-
-    fn stats(&self) -> LinkStats {
-        self.link.stats()
-    }
-
-    fn take_log(&mut self) -> Vec<u8> {
-        self.link.take_log()
+    fn end(&self) -> &dyn End {
+        self.link.end()
     }
 }
 

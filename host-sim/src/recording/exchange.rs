@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! /fieldline/request   a request as postcard: every bit of it
-//! /fieldline/reply     its answer as JSON: {"command":{…}}, {"status":…}, "done", {"refused":"…"}
+//! /fieldline/reply     its answer as JSON: {"reply":{"Command":{…}}}, {"refused":"…"}
 //! ```
 //!
 //! Each request is followed by its answer. A file that was cut has them up to the cut. The decimals
@@ -13,7 +13,7 @@
 use std::path::Path;
 
 use fieldline_protocol::SCHEMA;
-use fieldline_protocol::message::{Command, Status};
+use fieldline_protocol::message::{Reply, Request};
 use mcap::read::{LinearReader, Options};
 use mcap::records::Record;
 use serde::{Deserialize, Serialize};
@@ -22,7 +22,6 @@ use thiserror::Error;
 use super::{MADE_BY, REPLIES, REQUESTS, SCHEMA_KEY};
 use crate::link::digest::Digest;
 use crate::link::{Link, LinkError};
-use crate::session::ask::{Answer, Ask};
 
 /// The first bytes of a recording.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
@@ -31,12 +30,8 @@ const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Told {
-    /// To an observation.
-    Command(Box<Command>),
-    /// To a change of the session.
-    Status(Status),
-    /// To anything else.
-    Done,
+    /// The device's.
+    Reply(Box<Reply>),
     /// The device refused, for this reason.
     Refused(String),
     /// The link failed, for this reason.
@@ -49,7 +44,7 @@ pub struct Exchange {
     /// Simulated milliseconds.
     pub time_ms: u32,
     /// The request.
-    pub ask: Ask,
+    pub request: Request,
     /// The answer.
     pub told: Told,
 }
@@ -114,7 +109,7 @@ pub fn read(path: &Path) -> Result<Exchanges, ReadError> {
         is_cut: !bytes.ends_with(MAGIC),
         ..Exchanges::default()
     };
-    let mut open: Option<(u32, Ask)> = None;
+    let mut open: Option<(u32, Request)> = None;
     for message in messages {
         // What is behind the cut cannot be read.
         let Ok(message) = message else {
@@ -129,15 +124,20 @@ pub fn read(path: &Path) -> Result<Exchanges, ReadError> {
             what,
         };
         if topic == REQUESTS {
-            let ask = postcard::from_bytes(&message.data).map_err(|it| wrong(it.to_string()))?;
+            let request = postcard::from_bytes(&message.data);
+            let request = request.map_err(|it| wrong(it.to_string()))?;
             let time_ms = u32::try_from(message.log_time / 1_000_000).unwrap_or(u32::MAX);
-            open = Some((time_ms, ask));
+            open = Some((time_ms, request));
         } else if topic == REPLIES
-            && let Some((time_ms, ask)) = open.take()
+            && let Some((time_ms, request)) = open.take()
         {
             let told = serde_json::from_slice(&message.data);
             let told = told.map_err(|it| wrong(it.to_string()))?;
-            exchanges.list.push(Exchange { time_ms, ask, told });
+            exchanges.list.push(Exchange {
+                time_ms,
+                request,
+                told,
+            });
         }
     }
     if exchanges.list.is_empty() {
@@ -186,6 +186,18 @@ fn as_text<S: serde::Serializer>(digest: &Digest, to: S) -> Result<S::Ok, S::Err
 }
 
 impl Replayed {
+    /// Returns true if two replies are the same. Of commands the digest counts: costs and counters
+    /// of a link are not the device's deed.
+    fn agrees(&mut self, before: &Reply, now: &Reply) -> bool {
+        let (Reply::Command(before), Reply::Command(now)) = (before, now) else {
+            return before == now;
+        };
+        self.commands += 1;
+        self.recorded.add(before);
+        self.now.add(now);
+        self.recorded == self.now
+    }
+
     /// Returns true if the device did what it did before.
     #[must_use]
     pub fn is_same(&self) -> bool {
@@ -200,27 +212,20 @@ impl Replayed {
 pub fn replay(exchanges: &Exchanges, link: &mut dyn Link) -> Result<Replayed, LinkError> {
     let mut replayed = Replayed::default();
     link.hello()?;
-    for Exchange { time_ms, ask, told } in &exchanges.list {
+    for exchange in &exchanges.list {
         // A reboot, or a broken line, is no deed of the device.
-        if matches!(told, Told::Failed(_)) {
+        if matches!(exchange.told, Told::Failed(_)) {
             continue;
         }
         replayed.requests += 1;
-        let answer = ask.of(link)?;
-        let same = match (told, &answer) {
-            (Told::Command(before), Answer::Command(now)) => {
-                replayed.commands += 1;
-                replayed.recorded.add(before);
-                replayed.now.add(now);
-                replayed.recorded == replayed.now
-            }
-            (Told::Status(before), Answer::Status(now)) => before == now,
-            (Told::Refused(_), Answer::Refused(_)) => true,
-            (Told::Done, Answer::Done | Answer::Said(_)) => true,
-            _ => false,
+        let same = match (&exchange.told, link.ask(&exchange.request)) {
+            (Told::Reply(before), Ok(now)) => replayed.agrees(before, &now),
+            (Told::Refused(_), Err(LinkError::Refused(_))) => true,
+            (_, Ok(_) | Err(LinkError::Refused(_))) => false,
+            (_, Err(error)) => return Err(error),
         };
         if !same {
-            replayed.differs_at_ms = Some(*time_ms);
+            replayed.differs_at_ms = Some(exchange.time_ms);
             break;
         }
     }
@@ -229,21 +234,21 @@ pub fn replay(exchanges: &Exchanges, link: &mut dyn Link) -> Result<Replayed, Li
 
 #[cfg(test)]
 mod tests {
-    use fieldline_protocol::message::{Observation, Pose, Status};
+    use fieldline_protocol::message::{Observation, Pose, Reply, Request, Status};
     use fixed::types::I16F16;
 
     use super::{Exchange, ReadError, Told, read};
     use crate::recording::Recording;
     use crate::report::MadeBy;
-    use crate::session::ask::Ask;
 
     /// Records these requests; returns what is read of the file.
-    fn through_a_file(asks: &[Ask]) -> Vec<Exchange> {
+    fn through_a_file(requests: &[Request]) -> Vec<Exchange> {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("run.mcap");
         let mut recording = Recording::create(&path, &MadeBy::default()).expect("a file");
-        for ask in asks {
-            recording.exchange(ask, &Told::Status(Status::Exploring));
+        for request in requests {
+            let told = Told::Reply(Box::new(Reply::Control(Status::Exploring)));
+            recording.exchange(request, &told);
         }
         assert_eq!(recording.end(None), None);
         let read = read(&path).expect("a recording");
@@ -254,20 +259,22 @@ mod tests {
     #[test]
     fn every_bit_of_a_request_is_kept() {
         // Among these is 5.0999908, which `fixed` prints as 5.1.
-        let asks = (0..65_536).step_by(7).chain([6_553]).map(|fraction| {
-            let x = I16F16::from_bits(5 << 16 | fraction);
-            let pose = Pose {
-                x,
-                ..Pose::default()
-            };
-            Ask::Observation(Box::new(Observation {
-                pose,
-                ..Observation::default()
-            }))
-        });
-        let asks: Vec<Ask> = asks.collect();
-        let kept: Vec<Ask> = through_a_file(&asks).into_iter().map(|it| it.ask).collect();
-        assert!(kept == asks);
+        let fractions = (0..65_536).step_by(7).chain([6_553]);
+        let requests: Vec<Request> = fractions
+            .map(|fraction| {
+                let pose = Pose {
+                    x: I16F16::from_bits(5 << 16 | fraction),
+                    ..Pose::default()
+                };
+                Request::Observation(Observation {
+                    pose,
+                    ..Observation::default()
+                })
+            })
+            .collect();
+        let kept = through_a_file(&requests).into_iter();
+        let kept: Vec<Request> = kept.map(|it| it.request).collect();
+        assert!(kept == requests);
     }
 
     #[test]

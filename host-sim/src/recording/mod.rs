@@ -37,6 +37,7 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use fieldline_protocol::SCHEMA;
+use fieldline_protocol::message::Request;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, Compression, WriteOptions, Writer};
 
@@ -44,7 +45,6 @@ pub use exchange::{Exchange, Exchanges, ReadError, Replayed, Told, is_recording,
 pub use tap::Tap;
 
 use crate::report::{MadeBy, Report};
-use crate::session::ask::Ask;
 use crate::trial::sight::Sight;
 use ros::Message;
 use topics::Topics;
@@ -154,10 +154,13 @@ impl Recording {
     }
 
     /// Records a request and its answer.
-    fn exchange(&mut self, ask: &Ask, told: &Told) {
+    fn exchange(&mut self, request: &Request, told: &Told) {
+        if let Request::Observation(observation) = request {
+            self.set_time(observation.time_ms);
+        }
         // Everything that is asked and told can be written.
-        let (ask, told) = (postcard::to_allocvec(ask), serde_json::to_vec(told));
-        self.plain(REQUESTS, "postcard", &ask.unwrap_or_default());
+        let (request, told) = (postcard::to_allocvec(request), serde_json::to_vec(told));
+        self.plain(REQUESTS, "postcard", &request.unwrap_or_default());
         self.plain(REPLIES, "json", &told.unwrap_or_default());
     }
 

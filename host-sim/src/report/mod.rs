@@ -1,19 +1,24 @@
 //! The files that a run leaves: `report.json` and those beside it.
 //!
-//! The structures here are the schema of `report.json`, field by field and in this order;
-//! `host-sim/README.md` describes it in prose. Invariant: every number in the file is finite, and
-//! `null` stands for "not measured" or "never reached". Units are in the names: `_m` metres, `_m2`
-//! square metres, `_s` seconds, `_us` microseconds, `_deg` degrees.
+//! The structures here and in `outcome`, `settings`, `measures` and `cost` are the schema of
+//! `report.json`, field by field and in this order; `host-sim/README.md` describes it in prose.
+//! Invariant: every number in the file is finite, and `null` stands for "not measured" or "never
+//! reached". Units are in the names: `_m` metres, `_m2` square metres, `_s` seconds, `_us`
+//! microseconds, `_deg` degrees.
 
 pub mod commands;
+mod cost;
 pub mod folder;
 pub mod grid_map;
 mod input_faults;
 mod localization;
 pub mod loop_closing;
 pub mod made_by;
+mod measures;
 pub mod mission_log;
+mod outcome;
 pub mod ros_map;
+mod settings;
 pub mod team;
 mod text;
 pub mod true_ground;
@@ -26,11 +31,15 @@ use crate::slam::particles::ParticleReport;
 
 pub use crate::link::LinkStats;
 pub use crate::network::Counters;
+pub use cost::{Debug, Field, Percentiles, Planner, Stages};
 pub use grid_map::{GridMap, MapCell};
 pub use input_faults::InputFaults;
 pub use localization::{Localization, QualityShares};
 pub use loop_closing::{GivenUp, LoopClosing};
 pub use made_by::MadeBy;
+pub use measures::{Coverage, Loops, MapErrors, Patrol, Safety, WallError};
+pub use outcome::{LiveRequest, Outcome, ResidualFrontier, Trip};
+pub use settings::{Fence, Noise, Relaxation, SpaceField};
 pub use team::TeamReport;
 pub use true_ground::TrueGround;
 
@@ -160,271 +169,6 @@ pub struct Report {
     pub particles: Option<ParticleReport>,
 }
 
-/// A drive by order after the exploration.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Trip {
-    /// `home` or `goal`.
-    pub to: String,
-    /// The place, odometry frame.
-    pub to_m: [f64; 2],
-    /// True if the device said that the robot arrived.
-    pub reached: bool,
-    /// The device's reason if it refused the order.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub refused: Option<String>,
-    /// Distance from the place at the end, by the pose that the device took for the true one.
-    pub error_m: f64,
-    /// Difference from the first heading at the end, by that pose; the key is missing for a goal.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub error_deg: Option<f64>,
-    /// Distance of the true robot from the place at the end.
-    pub true_error_m: f64,
-    /// Where the robot stood at the end, by its own pose.
-    pub stands_m: [f64; 2],
-    /// Simulated seconds of the drive.
-    pub time_s: f64,
-}
-
-/// A request of a viewer, and what became of it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LiveRequest {
-    /// Simulated time, seconds.
-    pub time_s: f64,
-    /// `pause`, `resume`, `stop`, `home`, `explore` or `go to X,Y`.
-    pub request: String,
-    /// The status that the device answered, or why it refused.
-    pub answer: String,
-    /// True if it was done.
-    pub done: bool,
-}
-
-/// Bounds and no-go polygons, and whether the robot kept to them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Fence {
-    /// Corners of the polygons that the robot had to stay inside, world frame.
-    pub bounds_m: Vec<Vec<[f64; 2]>>,
-    /// Corners of the polygons that the robot had to stay out of.
-    pub no_go_m: Vec<Vec<[f64; 2]>>,
-    /// Greatest depth of the true hull in what was forbidden, metres.
-    pub deepest_m: f64,
-}
-
-/// The relaxation of a stored potential.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Relaxation {
-    /// Sweeps of the whole grid in each step.
-    pub sweeps: u16,
-    /// Type of the stored values: `f32` or `f64`.
-    pub precision: String,
-}
-
-/// The parameters of a space-based potential field.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SpaceField {
-    /// Least x and y, width and height of the area, world frame.
-    pub area_m: [f64; 4],
-    /// Share of the area whose coverage ends the exploration.
-    pub until: f64,
-    /// Seconds without a newly covered cell after which the robot follows a path, or `never`.
-    pub impatience: String,
-}
-
-/// End of a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Outcome {
-    /// `finished`, `fault`, `lost`, `time-limit`, `frozen` or `interrupted`.
-    pub status: String,
-    /// Kind of finish or fault. Only `explored` and `covered` are successes.
-    pub reason: String,
-    /// What the device lost when it rebooted: `map`, `pose`, `strategy`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub lost: Vec<String>,
-    /// Frontiers left at the end.
-    pub residual_frontiers: Vec<ResidualFrontier>,
-}
-
-/// A frontier left at the end.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ResidualFrontier {
-    /// Centre of one of its cells, odometry frame.
-    pub x_m: f64,
-    /// Centre of one of its cells.
-    pub y_m: f64,
-    /// Number of its cells.
-    pub cells: u32,
-    /// `unreachable`, `unobservable`, `out-of-bounds`, `no-progress` or `not-worth-it`.
-    pub reason: String,
-}
-
-/// Standard deviations of the sensors.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Noise {
-    /// Of a laser's range.
-    pub laser_m: f64,
-    /// Of roll and pitch.
-    pub imu_deg: f64,
-}
-
-/// Ground known, as a share of the ground that a disc of the robot's radius can see from where it
-/// can go.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Coverage {
-    /// `known_m2 / explorable_m2`, at most 1.
-    pub fraction: f64,
-    /// Area known at the end, of the explorable.
-    pub known_m2: f64,
-    /// Area that can be seen; in an uneven world the area that the robot can cover.
-    pub explorable_m2: f64,
-    /// First time at which the fraction was 0.90.
-    pub t90_s: Option<f64>,
-    /// First time at which the fraction was 0.95.
-    pub t95_s: Option<f64>,
-    /// First time at which the fraction was 0.99.
-    pub t99_s: Option<f64>,
-}
-
-/// Loops of the world that the robot drove, judged on its true path.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Loops {
-    /// Islands of the world with a way round them of at least 10 m.
-    pub islands: u32,
-    /// Islands that the robot drove round completely.
-    pub circled: u32,
-}
-
-/// Ages of the rails on a patrol, judged on the true path.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Patrol {
-    /// Longest time for which a rail was not visited, seconds.
-    pub max_rail_age_s: f64,
-    /// Mean over all rails and steps, seconds.
-    pub mean_rail_age_s: f64,
-}
-
-/// Contacts of the true footprint with the true world.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Safety {
-    /// Number of times that the footprint began to touch an obstacle.
-    pub collisions: u32,
-    /// Number of times that a wheel lost the ground.
-    pub falls: u32,
-    /// Number of times that the robot tipped over.
-    pub tips: u32,
-    /// Least distance from the footprint to an obstacle.
-    pub min_clearance_m: Option<f64>,
-    /// Number of times that two robots of a team began to touch; the key is missing for a robot
-    /// alone.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub robot_contacts: Option<u32>,
-    /// Number of times that the robot began to touch a person; the key is missing without people.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub person_contacts: Option<u32>,
-    /// Least distance from the footprint to a person, at most 1 m; the key is missing without
-    /// people.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub min_person_gap_m: Option<f64>,
-}
-
-/// The map's obstacle cells against the true surfaces, after the best rigid alignment of the map.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct MapErrors {
-    /// Distance of an obstacle cell to a true surface; `null` for a map without obstacles.
-    pub wall_error_m: Option<WallError>,
-    /// Share of the obstacle cells farther than 0.3 m from every true surface.
-    pub ghost_share: f64,
-    /// Share of the true walls around the floor that have an obstacle cell within 0.3 m.
-    #[serde(default)]
-    pub walls_share: Option<f64>,
-}
-
-/// Percentiles of the distance of an obstacle cell to a true surface.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct WallError {
-    /// The median.
-    pub p50: f64,
-    /// 95 of 100 cells are at or below it.
-    pub p95: f64,
-}
-
-/// Cost of planning.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Planner {
-    /// Time from sending an observation to the command, on this host, microseconds.
-    pub round_trip_us: Option<Percentiles>,
-    /// Instructions of a step on the device; `null` if it does not count them.
-    pub instructions: Option<Percentiles>,
-    /// Instructions of each stage. The maxima of two stages may come from different steps.
-    pub stage_instructions: Option<Stages>,
-    /// Deepest stack of the device; `null` if it does not measure it.
-    pub stack_bytes: Option<u32>,
-}
-
-/// Instructions of a step's stages.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Stages {
-    /// Decodes the request; encodes the reply to the request before it.
-    pub session: Percentiles,
-    /// Enters scans and odometry into the map.
-    pub sense: Percentiles,
-    /// Thins one share of the skeleton.
-    pub topology: Percentiles,
-    /// Runs the wavefront over a new skeleton, and searches the path.
-    pub plan: Percentiles,
-    /// Sets the window's cells and boundary.
-    pub window: Percentiles,
-    /// Solves the window's field.
-    pub solve: Percentiles,
-    /// Descends the field, drives, and searches for a recovery.
-    pub drive: Percentiles,
-}
-
-impl Stages {
-    /// Returns the stages with their names, in the order of a step.
-    #[must_use]
-    pub const fn by_name(&self) -> [(&'static str, Percentiles); 7] {
-        [
-            ("session", self.session),
-            ("sense", self.sense),
-            ("topology", self.topology),
-            ("plan", self.plan),
-            ("window", self.window),
-            ("solve", self.solve),
-            ("drive", self.drive),
-        ]
-    }
-}
-
-/// Nearest-rank percentiles over the steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Percentiles {
-    /// Half of the steps are at or below it.
-    pub p50: f64,
-    /// 99 of 100 steps are at or below it.
-    pub p99: f64,
-    /// The greatest.
-    pub max: f64,
-}
-
-/// Quality of the windows' solutions.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Field {
-    /// Angle between a step's heading and that of the converged window; `null` without
-    /// `--check-field`.
-    pub heading_error_deg: Option<Percentiles>,
-    /// Windows that `--check-field` compared.
-    pub checked_windows: u64,
-    /// Steps in which the solver's budget ended before it converged.
-    pub budget_exhausted_steps: u64,
-}
-
-/// Cross-checks of the simulator.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Debug {
-    /// True if the map read over the link equals the host's copy, cell for cell; `null` if either
-    /// is missing.
-    pub map_matches_mirror: Option<bool>,
-}
-
 impl Report {
     /// Returns the text of the file: indented JSON and a newline.
     #[must_use]
@@ -458,40 +202,13 @@ pub(crate) fn json_line(report: &impl Serialize) -> String {
     serde_json::to_string(report).unwrap_or_default()
 }
 
-impl Percentiles {
-    /// Returns the percentiles of `samples`, which may be in any order; `None` if there are none.
-    ///
-    /// Nearest rank: the p-th percentile of n samples is the ⌈p·n⌉-th smallest.
-    #[must_use]
-    pub fn of(samples: &[f64]) -> Option<Self> {
-        let mut sorted = samples.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        let rank = |per_cent: usize| (sorted.len() * per_cent).div_ceil(100).saturating_sub(1);
-        Some(Self {
-            p50: *sorted.get(rank(50))?,
-            p99: *sorted.get(rank(99))?,
-            max: *sorted.last()?,
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Percentiles, Report};
+    use super::Report;
 
     /// Returns a report with a value of each kind.
     pub(crate) fn sample() -> Report {
         serde_json::from_str(include_str!("sample.json")).expect("the sample fits the schema")
-    }
-
-    #[test]
-    fn percentiles_are_nearest_rank() {
-        let hundred: Vec<f64> = (1..=100).rev().map(f64::from).collect();
-        let p = Percentiles::of(&hundred).unwrap();
-        assert_eq!((p.p50, p.p99, p.max), (50.0, 99.0, 100.0));
-        let one = Percentiles::of(&[7.0]).unwrap();
-        assert_eq!((one.p50, one.p99, one.max), (7.0, 7.0, 7.0));
-        assert_eq!(Percentiles::of(&[]), None);
     }
 
     #[test]

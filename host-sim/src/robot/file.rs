@@ -7,11 +7,12 @@
 //! A fault names the file, the line, what is wrong and what to write. Whatever passes here is also
 //! accepted by the planner. In the file metres, degrees and seconds; out of it radians.
 
+mod keys;
+
 use core::fmt;
 use core::ops::RangeInclusive;
 
 use fieldline_planner::{LaserMount, RobotShape};
-use serde::Deserialize;
 use serde_saphyr::{Location, Spanned};
 
 use super::drive::DriveLimits;
@@ -20,6 +21,7 @@ use super::laser::LaserNoise;
 use super::lidar::Lidar;
 use super::odometry::OdometryNoise;
 use super::spec::{RobotSpec, Sweep};
+use keys::{DriveKeys, HullKeys, Keys, LaserKeys, NoiseKeys, Number, OdometryKeys};
 
 /// Why a text is no robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,85 +44,6 @@ impl fmt::Display for RobotError {
 }
 
 impl core::error::Error for RobotError {}
-
-/// A number with the place where it stands.
-type Number = Spanned<f64>;
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Keys {
-    hull: Spanned<HullKeys>,
-    clearance: Option<Number>,
-    drive: Spanned<DriveKeys>,
-    lasers: Spanned<Vec<Spanned<LaserKeys>>>,
-    odometry: Option<OdometryKeys>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct HullKeys {
-    length: Option<Number>,
-    width: Option<Number>,
-    radius: Option<Number>,
-    height: Number,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DriveKeys {
-    track: Option<Number>,
-    effective_track: Option<Number>,
-    speed: Number,
-    turn_rate: Number,
-    acceleration: Number,
-    braking: Option<Number>,
-    turn_acceleration: Number,
-    wheel_speed: Option<Number>,
-    turns_on_the_spot: Option<Spanned<bool>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct LaserKeys {
-    x: Number,
-    y: Number,
-    z: Number,
-    yaw: Option<Number>,
-    pitch: Option<Number>,
-    #[serde(default)]
-    upside_down: bool,
-    #[serde(default)]
-    clockwise: bool,
-    first: Option<Number>,
-    step: Option<Number>,
-    field: Option<Number>,
-    beams: Number,
-    least_range: Option<Number>,
-    range: Number,
-    noise: Option<NoiseKeys>,
-    mask: Option<Vec<Spanned<[f64; 2]>>>,
-    ignore_hull: Option<bool>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct NoiseKeys {
-    sd: Option<Number>,
-    lost: Option<Number>,
-    false_return: Option<Number>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct OdometryKeys {
-    times: Option<Number>,
-    turn_by_turn: Option<Number>,
-    turn_by_distance: Option<Number>,
-    distance_by_distance: Option<Number>,
-    distance_by_turn: Option<Number>,
-    distance_scale: Option<Number>,
-    turn_scale: Option<Number>,
-}
 
 /// A fault and its place.
 type Fault = (Location, String);

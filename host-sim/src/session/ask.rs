@@ -1,20 +1,14 @@
 //! A request of a session, and its answer.
 //!
 //! An [`Ask`] is a request of the wire without what belongs to the connection: version, schema and
-//! nonce of a hello, sequence numbers. So it outlives a change of the schema. As text it is a line
-//! of compact JSON, as in `"pause"` or `{"tile":{"x":0,"y":-1}}`.
-
-use core::fmt;
-use core::str::FromStr;
+//! nonce of a hello, sequence numbers. So it outlives a change of the schema.
 
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, FieldRow, Observation, Packet, Start, Status,
 };
 use fixed::types::I16F16;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
-use super::compact::{pack, unpack};
 use crate::link::{Link, LinkError};
 
 /// A request.
@@ -44,15 +38,6 @@ pub enum Ask {
     },
     /// Goes on exploring.
     Explore,
-    /// Says where home is.
-    SetHome {
-        /// Metres.
-        x: I16F16,
-        /// Metres.
-        y: I16F16,
-        /// Radians.
-        yaw: I16F16,
-    },
     /// Reports what the robot sensed.
     Observation(Box<Observation>),
     /// Passes on a packet of another robot.
@@ -124,7 +109,6 @@ impl Ask {
             Self::Home => control(&Control::Home),
             Self::GoTo { x, y } => control(&Control::GoTo { x: *x, y: *y }),
             Self::Explore => control(&Control::Explore),
-            &Self::SetHome { x, y, yaw } => control(&Control::SetHome { x, y, yaw }),
             Self::Hello => link.hello().map(|_| Answer::Done),
             Self::Observation(observation) => {
                 let command = link.observe(observation)?;
@@ -143,42 +127,5 @@ impl Ask {
             Self::Frontiers => link.frontiers().map(|_| Answer::Done),
             Self::Path { from } => link.path(*from).map(|_| Answer::Done),
         }
-    }
-}
-
-impl From<&Control> for Ask {
-    fn from(control: &Control) -> Self {
-        match control {
-            Control::Start(start) => Self::Start(Box::new(start.clone())),
-            Control::Pause => Self::Pause,
-            Control::Resume => Self::Resume,
-            Control::Stop => Self::Stop,
-            Control::Reset => Self::Reset,
-            Control::Home => Self::Home,
-            &Control::GoTo { x, y } => Self::GoTo { x, y },
-            Control::Explore => Self::Explore,
-            &Control::SetHome { x, y, yaw } => Self::SetHome { x, y, yaw },
-        }
-    }
-}
-
-impl fmt::Display for Ask {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let value = serde_json::to_value(self).map_err(|_| fmt::Error)?;
-        pack("", value).fmt(f)
-    }
-}
-
-impl FromStr for Ask {
-    type Err = String;
-
-    /// Reads a line. The error says what is wrong, and the remedy.
-    fn from_str(line: &str) -> Result<Self, String> {
-        let remedy = "correct the line or leave it out";
-        let value: Value = serde_json::from_str(line).map_err(|error| {
-            format!("this is no JSON: {error}; write one request a line, as in \"pause\"")
-        })?;
-        let value = unpack("", value).map_err(|what| format!("{what}; {remedy}"))?;
-        serde_json::from_value(value).map_err(|error| format!("{error}; {remedy}"))
     }
 }

@@ -15,8 +15,10 @@ use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use super::ask::Ask;
+use super::compact::{pack, unpack};
 use super::target::Capacity;
 
 /// Version of the format.
@@ -106,7 +108,7 @@ impl Script {
             .next()
             .ok_or_else(|| at(1, format!("the file is empty; {HEAD_REMEDY}")))?;
         let head = head(line).map_err(|what| at(first, what))?;
-        let asks = lines.map(|(number, line)| line.parse().map_err(|what| at(number, what)));
+        let asks = lines.map(|(number, line)| request(line).map_err(|what| at(number, what)));
         Ok(Self {
             head,
             asks: asks.collect::<Result<_, _>>()?,
@@ -139,12 +141,22 @@ fn head(line: &str) -> Result<Head, String> {
     }
 }
 
+fn request(line: &str) -> Result<Ask, String> {
+    let remedy = "correct the line or leave it out";
+    let value: Value = serde_json::from_str(line).map_err(|error| {
+        format!("this is no JSON: {error}; write one request a line, as in \"pause\"")
+    })?;
+    let value = unpack("", value).map_err(|what| format!("{what}; {remedy}"))?;
+    serde_json::from_value(value).map_err(|error| format!("{error}; {remedy}"))
+}
+
 impl fmt::Display for Script {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let head = serde_json::to_string(&self.head).map_err(|_| fmt::Error)?;
         writeln!(f, "{head}")?;
         for ask in &self.asks {
-            writeln!(f, "{ask}")?;
+            let value = serde_json::to_value(ask).map_err(|_| fmt::Error)?;
+            writeln!(f, "{}", pack("", value))?;
         }
         Ok(())
     }

@@ -11,7 +11,8 @@ use thiserror::Error;
 
 use fieldline_protocol::message::{Observation, Twist};
 
-use super::{CONTACT_OVER_M, SimConfig, Simulator};
+use super::motion::CONTACT_OVER_M;
+use super::{SimConfig, Simulator};
 use crate::robot::{FARTHEST_M, OtherRobot};
 use crate::world::{World, WorldError};
 

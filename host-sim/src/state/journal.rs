@@ -14,15 +14,11 @@
 use core::cell::RefCell;
 use std::rc::Rc;
 
-use fieldline_protocol::message::{
-    Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
-    Packet, Path, ResidualFrontier, Status, Tile,
-};
+use fieldline_protocol::message::{Command, Path, Reply, Request, Status};
 use serde::{Deserialize, Serialize};
 
 use crate::link::correction::MapCorrection;
-use crate::link::inside::Inside;
-use crate::link::{Link, LinkError, LinkStats};
+use crate::link::{End, Link, LinkError};
 
 /// An answer of the planner, or why there was none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -139,17 +135,6 @@ impl<'l> Recorder<'l> {
         self.journal.borrow_mut().answers.push(kept);
         answer
     }
-
-    /// Reads something, or nothing while answers are given again.
-    fn read<T: Default>(
-        &mut self,
-        ask: impl FnOnce(&mut dyn Link) -> Result<T, LinkError>,
-    ) -> Result<T, LinkError> {
-        if self.journal.borrow().is_again() {
-            return Ok(T::default());
-        }
-        ask(self.link)
-    }
 }
 
 /// The run asks for another kind of answer than the kept one.
@@ -161,64 +146,40 @@ fn strays() -> LinkError {
 }
 
 impl Link for Recorder<'_> {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        self.link.hello()
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        let is_again = self.journal.borrow().is_again();
+        match request {
+            Request::Control(control) => {
+                let status = self.answer(
+                    |link| link.control(control),
+                    |status| Answer::Status(*status),
+                    |answer| match answer {
+                        Answer::Status(status) => Some(status),
+                        _ => None,
+                    },
+                )?;
+                Ok(Reply::Control(status))
+            }
+            Request::Observation(observation) => {
+                let command = self.answer(
+                    |link| link.observe(observation),
+                    |command| Answer::Command(*command),
+                    |answer| match answer {
+                        Answer::Command(command) => Some(command),
+                        _ => None,
+                    },
+                )?;
+                Ok(Reply::Command(command))
+            }
+            Request::Tile { .. } if is_again => Ok(Reply::Tile(None)),
+            Request::FieldRow { .. } if is_again => Ok(Reply::FieldRow(None)),
+            Request::Frontiers if is_again => Ok(Reply::Frontiers(heapless::Vec::new())),
+            Request::Path { .. } if is_again => Ok(Reply::Path(Path::default())),
+            _ => self.link.ask(request),
+        }
     }
 
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        self.answer(
-            |link| link.control(control),
-            |status| Answer::Status(*status),
-            |answer| match answer {
-                Answer::Status(status) => Some(status),
-                _ => None,
-            },
-        )
-    }
-
-    fn observe(&mut self, observation: &Observation) -> Result<Command, LinkError> {
-        self.answer(
-            |link| link.observe(observation),
-            |command| Answer::Command(*command),
-            |answer| match answer {
-                Answer::Command(command) => Some(command),
-                _ => None,
-            },
-        )
-    }
-
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        self.read(|link| link.tile(x, y))
-    }
-
-    fn field_row(&mut self, row: u8) -> Result<Option<FieldRow>, LinkError> {
-        self.read(|link| link.field_row(row))
-    }
-
-    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
-        self.read(|link| link.frontiers())
-    }
-
-    fn path(&mut self, from: u8) -> Result<Path, LinkError> {
-        self.read(|link| link.path(from))
-    }
-
-    fn hear(&mut self, packet: &Packet) -> Result<(), LinkError> {
-        self.link.hear(packet)
-    }
-
-    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
-        self.link.say()
-    }
-
-    fn open_correction(&mut self, correct: &Correct) -> Result<CorrectionProgress, LinkError> {
-        self.link.open_correction(correct)
-    }
-
-    fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
-        self.link.send_tiles(part)
-    }
-
+    /// A correction has one answer, whatever its parts.
     fn correct(&mut self, correction: &MapCorrection) -> Result<(), LinkError> {
         self.answer(
             |link| link.correct(correction),
@@ -227,16 +188,8 @@ impl Link for Recorder<'_> {
         )
     }
 
-    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-        self.link.inside()
-    }
-
-    fn stats(&self) -> LinkStats {
-        self.link.stats()
-    }
-
-    fn take_log(&mut self) -> Vec<u8> {
-        self.link.take_log()
+    fn end(&self) -> &dyn End {
+        self.link.end()
     }
 }
 

@@ -1,7 +1,8 @@
 //! Ends of a run, and their words in the report.
 
-use fieldline_protocol::message::{Errand, Fault, Finish, Mistake};
+use fieldline_protocol::message::{Errand, Fault, Finish};
 
+use super::wiring_advice::wiring_advice;
 use super::wording;
 use crate::link::LinkError;
 use crate::sim::Loss;
@@ -151,78 +152,6 @@ fn fault_advice(fault: Fault) -> &'static str {
         Fault::Stuck => "the robot did not move although it was commanded to; see run.png",
         Fault::PoseLost => "the scan contradicts the map, and no place near by agrees; see run.png",
         Fault::Miswired(mistake) => wiring_advice(mistake),
-    }
-}
-
-/// Returns what contradicts what, and what to look at.
-#[must_use]
-pub fn wiring_advice(mistake: Mistake) -> &'static str {
-    match mistake {
-        Mistake::ScanMirrored => {
-            "the scan turns against the odometry: is it mirrored? set clockwise or upside_down of \
-             the lidar in the robot file"
-        }
-        Mistake::LaserTurnedLeft => {
-            "the laser looks 90 degrees to the left of where its mount says: correct its yaw by \
-             90, or the first angle; with two lasers, are they swapped?"
-        }
-        Mistake::LaserTurnedBack => {
-            "the laser looks backwards: correct its yaw by 180, or the first angle; with two \
-             lasers, are they swapped?"
-        }
-        Mistake::LaserTurnedRight => {
-            "the laser looks 90 degrees to the right of where its mount says: correct its yaw by \
-             -90, or the first angle; with two lasers, are they swapped?"
-        }
-        Mistake::ScanStands => {
-            "the scan does not change while the odometry moves: does the driver repeat an old \
-             scan, are two lasers swapped, do the wheels spin?"
-        }
-        Mistake::YawReversed => {
-            "the odometry turns against the command and the scan: the yaw must grow when the robot \
-             turns left; change its sign"
-        }
-        Mistake::WayReversed => {
-            "the odometry drives against the command and the scan: change the sign of its distance"
-        }
-        Mistake::TurnsReversed => {
-            "the robot turns against the command: are the left and the right motor swapped, or is \
-             the sign of the yaw wrong?"
-        }
-        Mistake::DriveReversed => {
-            "the robot drives against the command: are the motors reversed, or is the sign of the \
-             distance wrong?"
-        }
-        Mistake::WayTooLong => {
-            "the odometry counts a longer way than the robot drives: are millimetres given as \
-             metres, or are wheel radius and ticks a turn too great?"
-        }
-        Mistake::WayTooShort => {
-            "the odometry counts a shorter way than the robot drives: are its units metres, are \
-             both encoders plugged in, are wheel radius and ticks a turn right?"
-        }
-        Mistake::TurnTooGreat => {
-            "the odometry counts a greater turn than the robot makes: is the yaw in radians, is \
-             the track too small?"
-        }
-        Mistake::TurnTooSmall => {
-            "the odometry counts a smaller turn than the robot makes: is the yaw in radians, is \
-             the track too great?"
-        }
-        Mistake::RangesTooShort => {
-            "every range is a few millimetres: are metres given as millimetres, or does something \
-             cover the lidar?"
-        }
-        Mistake::LasersSwapped => {
-            "the level laser sees the ground that the tilted one should see: swap the two scans"
-        }
-        Mistake::ClockStands => {
-            "the time of the observations stands: give milliseconds of a clock that goes on"
-        }
-        Mistake::ClockFast => {
-            "the time of the observations runs 50 times too fast or more: give milliseconds, not \
-             microseconds"
-        }
     }
 }
 

@@ -14,20 +14,22 @@
 //! a pause, and what of its budget is used. It is told them again.
 //!
 //! A viewer's request to drive comes before all of this. The drive that it cuts short is made
-//! later,
-//! the robot stands where the request took it, and *resume* goes on with what was to be done.
+//! later, the
+//! robot stands where the request took it, and *resume* goes on with what was to be done.
 //!
 //! Units: metres and radians in the device's map; milliseconds; in reports degrees.
+
+mod trip;
 
 use std::collections::VecDeque;
 
 use fieldline_protocol::message::{Budget, Command, Control, Errand, Finish, Status};
-use fixed::types::I16F16;
 
 use super::{Ending, Record};
 use crate::link::{Link, LinkError};
 use crate::report;
 use crate::report::tum::Stamped;
+use trip::{Leg, Trip, tell};
 
 /// What the robot does after its exploration.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -60,31 +62,6 @@ impl Pause {
     const fn holds(&self, now_ms: u32) -> bool {
         self.from_ms <= now_ms && now_ms < self.to_ms
     }
-}
-
-/// A place to drive to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Leg {
-    Goal([f64; 2]),
-    Home,
-}
-
-/// A drive by order, as far as it went.
-#[derive(Clone, Debug, PartialEq)]
-struct Trip {
-    leg: Leg,
-    /// Status at its end; `None` while it lasts.
-    end: Option<Status>,
-    /// The device's reason if it refused the order.
-    refused: Option<String>,
-    /// It was a viewer's request, or one cut it short: no part of the orders' success.
-    is_aside: bool,
-    begun_ms: u32,
-    /// `None` while it lasts.
-    ended_ms: Option<u32>,
-    /// Where the robot thought it was at the end, and where it was.
-    estimate: Stamped,
-    truth: Stamped,
 }
 
 /// The orders that are left, and the drives so far.
@@ -418,60 +395,4 @@ impl Itinerary {
 /// Returns the time of the last step, milliseconds.
 fn now_ms(record: &Record) -> u32 {
     record.steps.last().map_or(0, |step| step.truth.time_ms)
-}
-
-/// Orders a drive. Returns the device's reason if it refuses.
-fn tell(leg: Leg, link: &mut dyn Link) -> Result<Option<String>, LinkError> {
-    match link.control(&leg.control()) {
-        Ok(_) => Ok(None),
-        Err(LinkError::Refused(reason)) => Ok(Some(reason)),
-        Err(error) => Err(error),
-    }
-}
-
-impl Leg {
-    fn control(self) -> Control {
-        match self {
-            Self::Home => Control::Home,
-            Self::Goal(at) => {
-                let [x, y] = at.map(I16F16::saturating_from_num);
-                Control::GoTo { x, y }
-            }
-        }
-    }
-
-    const fn errand(self) -> Errand {
-        match self {
-            Self::Home => Errand::Home,
-            Self::Goal(_) => Errand::Goal,
-        }
-    }
-}
-
-impl Trip {
-    const fn has_arrived(&self) -> bool {
-        matches!(self.end, Some(Status::Arrived(_)))
-    }
-
-    /// Returns the trip for the report. `home` is where the session began.
-    fn report(&self, home: &Stamped) -> report::Trip {
-        let to_m = match self.leg {
-            Leg::Home => [home.x_m, home.y_m],
-            Leg::Goal(at) => at,
-        };
-        let off_m = |at: &Stamped| (at.x_m - to_m[0]).hypot(at.y_m - to_m[1]);
-        let turn = self.estimate.yaw_rad - home.yaw_rad;
-        let off_deg = turn.sin().atan2(turn.cos()).abs().to_degrees();
-        report::Trip {
-            to: super::wording::errand(self.leg.errand()).into(),
-            to_m,
-            reached: self.has_arrived(),
-            refused: self.refused.clone(),
-            error_m: off_m(&self.estimate),
-            error_deg: matches!(self.leg, Leg::Home).then_some(off_deg),
-            true_error_m: off_m(&self.truth),
-            stands_m: [self.estimate.x_m, self.estimate.y_m],
-            time_s: f64::from(self.ended_ms.unwrap_or(self.begun_ms) - self.begun_ms) / 1000.0,
-        }
-    }
 }

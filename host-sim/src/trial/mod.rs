@@ -11,6 +11,7 @@ pub mod corrector;
 pub mod ending;
 pub mod freeze;
 pub mod itinerary;
+mod keeper;
 pub mod map_copy;
 pub mod mirror;
 pub mod mission;
@@ -26,6 +27,8 @@ mod summary;
 pub mod surprises;
 pub mod team;
 pub mod uneven;
+mod watch;
+pub mod wiring_advice;
 pub mod wording;
 
 use std::time::Instant;
@@ -47,9 +50,11 @@ use snapshot::{Snapshot, Window};
 pub use body::Body;
 pub use corrector::Corrector;
 pub use ending::Ending;
+pub use keeper::{Keeper, Moment};
 pub use map_copy::MapCopy;
 use record::unstamped;
 pub use record::{Record, Step};
+pub use watch::{Flow, Progress, Watch};
 
 /// Time for the robot to come to rest after the last command, milliseconds: its watchdog's 500 ms,
 /// and braking from full speed at 0.3 m/s².
@@ -76,75 +81,6 @@ pub trait Survey {
     fn relief(&self, _window: &Window) -> Option<Relief> {
         None
     }
-}
-
-/// Keeps what a run knows, so that it can go on after its host was killed.
-pub trait Keeper {
-    /// Called after every step, and at the end of the run before the robot is brought to rest.
-    /// `mirror` is the copy of a lone robot's map.
-    ///
-    /// # Errors
-    /// [`LinkError::Io`] if the run that is resumed is not the one that was kept.
-    fn keep(&mut self, at: Moment, record: &Record, mirror: &Mirror) -> Result<(), LinkError>;
-}
-
-/// Keeps nothing.
-impl Keeper for () {
-    fn keep(&mut self, _: Moment, _: &Record, _: &Mirror) -> Result<(), LinkError> {
-        Ok(())
-    }
-}
-
-/// When a [`Keeper`] is called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Moment {
-    /// After a step, before the robot drives.
-    Step,
-    /// After the last step.
-    End,
-    /// After the link failed in the step that follows the last one.
-    Broken,
-}
-
-/// Watches a run and may end it: a progress line, a pacer, the interrupt key, a live page.
-pub trait Watch {
-    /// Called after every step; the answer says if the run goes on.
-    fn step(&mut self, progress: &Progress) -> Flow;
-
-    /// Called then with all that the step knows, before the robot drives. Whoever watches may look
-    /// and make requests of the device, as [`Sight::request`] does.
-    fn see(&mut self, _sight: &mut Sight<'_>) {}
-}
-
-/// Watches nothing; the run goes on.
-impl Watch for () {
-    fn step(&mut self, _: &Progress) -> Flow {
-        Flow::Continue
-    }
-}
-
-/// Answer of a [`Watch`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Flow {
-    /// Go on.
-    Continue,
-    /// Stop the robot and end the run.
-    Interrupt,
-}
-
-/// Progress of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// Simulated milliseconds.
-    pub time_ms: u32,
-    /// Fraction of the explorable world that is known.
-    pub coverage: f64,
-    /// Metres driven.
-    pub path_m: f64,
-    /// Where the planner takes the robot to be.
-    pub estimate: Stamped,
-    /// The last command.
-    pub command: Command,
 }
 
 /// Settings of a run.
@@ -372,7 +308,7 @@ fn read_out(cast: &mut Cast<'_>, record: &mut Record) {
         record.read_out_error = Some(error);
     }
     record.relief = relief(cast, record.window.as_ref());
-    record.link_stats = cast.link.stats();
+    record.link_stats = cast.link.end().stats();
 }
 
 fn relief(cast: &Cast<'_>, window: Option<&Window>) -> Option<Relief> {

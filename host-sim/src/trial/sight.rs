@@ -56,7 +56,7 @@ impl Sight<'_> {
     /// Looks into the device, if it lives in this process.
     #[must_use]
     pub fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-        self.link.inside()
+        self.link.end().inside()
     }
 
     /// Returns the number of the map's changes so far, which wraps; `None` without a map.

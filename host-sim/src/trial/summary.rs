@@ -1,6 +1,6 @@
 //! The report of a run, put together from its mission, simulator, account and record.
 
-use fieldline_protocol::message::{Finish, Strategy};
+use fieldline_protocol::message::{Finish, Order, Strategy};
 
 use super::account::Account;
 use super::mission::{BVP_PAPERS, Mission, on_device};
@@ -25,18 +25,16 @@ pub(super) fn report(
     record: &Record,
 ) -> Report {
     let world = simulator.world();
-    let ground = mission.uneven_ground.map_or("flat", |_| "uneven");
-    let order = on_device(&mission.strategy).map(|_| mission.order());
     Report {
         schema_version: SCHEMA_VERSION,
         world: world.name().into(),
         strategy: mission.strategy.clone(),
-        ground: ground.into(),
+        ground: ground(mission).into(),
         preference: preference(mission),
         levels: mission.levels(),
         tdbvp_impatience: impatience(mission),
-        order: order.map(|it| wording::order(it).into()),
-        worth: order.map(|it| it.worth().to_num()),
+        order: order(mission).map(|it| wording::order(it).into()),
+        worth: order(mission).map(|it| it.worth().to_num()),
         space_field: space_field(mission, world),
         fence: fence(mission, simulator),
         trips: record.trips.clone(),
@@ -90,6 +88,15 @@ fn mission_log(mission: &Mission, record: &Record) -> Vec<Entry> {
     mission_log::last(mission_log::entries(
         steps.map(|step| (&step.estimate, &step.command)),
     ))
+}
+
+fn ground(mission: &Mission) -> &'static str {
+    mission.uneven_ground.map_or("flat", |_| "uneven")
+}
+
+/// Returns the order of frontiers. A planner on the host has its own.
+fn order(mission: &Mission) -> Option<Order> {
+    on_device(&mission.strategy).map(|_| mission.order())
 }
 
 fn preference(mission: &Mission) -> Option<String> {

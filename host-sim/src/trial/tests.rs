@@ -1,16 +1,14 @@
 //! Runs with a scripted device and a point robot: every end, and the record after it.
 
 use fieldline_protocol::message::{
-    Command, Control, Correct, CorrectedTiles, CorrectionProgress, Fault, FieldRow, Finish,
-    Identity, Location, Observation, Packet, Path, Quality, ResidualFrontier, ResidualReason,
-    Start, Status, Tile, Twist,
+    Command, Control, Fault, Finish, Identity, Location, Observation, Path, Quality, Reply,
+    Request, ResidualFrontier, ResidualReason, Start, Status, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
 use super::itinerary::Orders;
 use super::{Body, Cast, Ending, Flow, Progress, Record, Setup, Survey, Watch, run};
-use crate::link::inside::Inside;
-use crate::link::{Link, LinkError, LinkStats};
+use crate::link::{End, Link, LinkError, LinkStats};
 use crate::report::tum::Stamped;
 use crate::sim::Loss;
 
@@ -74,70 +72,65 @@ impl Script {
 }
 
 impl Link for Script {
-    fn hello(&mut self) -> Result<Identity, LinkError> {
-        Ok(Identity::default())
-    }
-    fn control(&mut self, control: &Control) -> Result<Status, LinkError> {
-        self.controls.push(control.clone());
-        Ok(Status::Exploring)
-    }
-    fn observe(&mut self, _: &Observation) -> Result<Command, LinkError> {
-        let line = self.asked.min(self.answers.len() - 1);
-        self.asked += 1;
-        self.answers[line].clone()
-    }
-    fn tile(&mut self, x: i16, y: i16) -> Result<Option<Tile>, LinkError> {
-        // Three tiles on a diagonal, the last of them far from the start.
-        let known = (0..3).contains(&x) && x == y;
-        Ok(known.then(|| Tile {
-            x,
-            y,
-            cells: heapless::Vec::from_slice(&[0b0101_0101; 256]).unwrap(),
-            skeleton: heapless::Vec::new(),
-            closed_regions: 1,
-            given_up_regions: 2,
-            visit_stamps: [0, 7, 0, 9],
-        }))
-    }
-    fn field_row(&mut self, _: u8) -> Result<Option<FieldRow>, LinkError> {
-        Ok(None)
-    }
-    fn frontiers(&mut self) -> Result<Vec<ResidualFrontier>, LinkError> {
-        Ok(vec![ResidualFrontier {
-            x: 30,
-            y: -13,
-            cells: 4,
-            reason: ResidualReason::Unreachable,
-        }])
-    }
-    fn path(&mut self, _: u8) -> Result<Path, LinkError> {
-        Ok(Path::default())
-    }
-    fn hear(&mut self, _: &Packet) -> Result<(), LinkError> {
-        Ok(())
-    }
-    fn open_correction(&mut self, _: &Correct) -> Result<CorrectionProgress, LinkError> {
-        Err(LinkError::Refused("a script has no map".into()))
+    fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
+        Ok(match request {
+            Request::Hello { .. } => Reply::Hello(Identity::default()),
+            Request::Control(control) => {
+                self.controls.push(control.clone());
+                Reply::Control(Status::Exploring)
+            }
+            Request::Observation(_) => {
+                let line = self.asked.min(self.answers.len() - 1);
+                self.asked += 1;
+                Reply::Command(self.answers[line].clone()?)
+            }
+            // Three tiles on a diagonal, the last of them far from the start.
+            Request::Tile { x, y } => {
+                Reply::Tile(((0..3).contains(x) && x == y).then(|| a_tile(*x, *y)))
+            }
+            Request::FieldRow { .. } => Reply::FieldRow(None),
+            Request::Frontiers => {
+                let left = ResidualFrontier {
+                    x: 30,
+                    y: -13,
+                    cells: 4,
+                    reason: ResidualReason::Unreachable,
+                };
+                Reply::Frontiers([left].into_iter().collect())
+            }
+            Request::Path { .. } => Reply::Path(Path::default()),
+            Request::Hear(_) => Reply::Heard,
+            Request::Say => Reply::Say(None),
+            Request::Correct(_) | Request::Tiles(_) => {
+                return Err(LinkError::Refused("a script has no map".into()));
+            }
+        })
     }
 
-    fn send_tiles(&mut self, _: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
-        Err(LinkError::Refused("a script has no map".into()))
+    fn end(&self) -> &dyn End {
+        self
     }
+}
 
-    fn say(&mut self) -> Result<Option<Packet>, LinkError> {
-        Ok(None)
-    }
-    fn take_log(&mut self) -> Vec<u8> {
-        Vec::new()
-    }
-    fn inside(&self) -> Option<Box<dyn Inside + '_>> {
-        None
-    }
+impl End for Script {
     fn stats(&self) -> LinkStats {
         LinkStats {
             sent: self.asked as u64,
             ..LinkStats::default()
         }
+    }
+}
+
+/// A tile whose cells are all free.
+fn a_tile(x: i16, y: i16) -> Tile {
+    Tile {
+        x,
+        y,
+        cells: heapless::Vec::from_slice(&[0b0101_0101; 256]).unwrap(),
+        skeleton: heapless::Vec::new(),
+        closed_regions: 1,
+        given_up_regions: 2,
+        visit_stamps: [0, 7, 0, 9],
     }
 }
 

@@ -2,6 +2,8 @@
 
 mod campaigns;
 mod commands;
+mod ends;
+mod errands;
 mod mission_files;
 #[cfg(feature = "record")]
 mod recordings;
@@ -11,6 +13,10 @@ mod resumes;
 mod robots;
 mod runs;
 mod sessions;
+mod teams;
+
+use std::fs;
+use std::path::Path;
 
 use assert_cmd::Command;
 use serde_json::Value;
@@ -44,4 +50,38 @@ fn outcome(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
 fn reports(stdout: &str) -> Vec<Value> {
     let parse = |line| serde_json::from_str(line).expect("a JSON object a line");
     stdout.lines().map(parse).collect()
+}
+
+/// The files of a run.
+const FILES: [&str; 8] = [
+    "commands.csv",
+    "map.pgm",
+    "map.yaml",
+    "mission.log",
+    "report.json",
+    "run.png",
+    "trajectory.tum",
+    "trajectory_truth.tum",
+];
+
+/// The files of a run that may go on.
+fn kept_files() -> Vec<&'static str> {
+    let mut files = FILES.to_vec();
+    files.insert(6, "session.state");
+    files
+}
+
+/// The names in a folder, sorted.
+fn files(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let name = |entry: std::io::Result<fs::DirEntry>| {
+        entry
+            .expect("readable")
+            .file_name()
+            .into_string()
+            .expect("text")
+    };
+    let mut names: Vec<String> = entries.map(name).collect();
+    names.sort();
+    names
 }

@@ -127,8 +127,8 @@ fn a_run_goes_on_over_another_link_with_its_orders() {
     );
 }
 
-#[test]
-fn states_that_do_not_fit_are_refused_in_one_line() {
+/// A run of 30 s in folder `run`, which may go on.
+fn unfinished() -> TempDir {
     let folder = folder();
     let run = [
         "explore",
@@ -141,9 +141,16 @@ fn states_that_do_not_fit_are_refused_in_one_line() {
         "run",
     ];
     assert_eq!(outcome(&folder, &run).0, 1);
-    let path = folder.path().join("run/session.state");
-    let whole = fs::read(&path).expect("a state");
-    let resume = |more: &[&'static str]| [&["explore", "office", "--resume", "run"], more].concat();
+    folder
+}
+
+fn resume(more: &[&'static str]) -> Vec<&'static str> {
+    [&["explore", "office", "--resume", "run"], more].concat()
+}
+
+#[test]
+fn a_state_of_other_options_is_refused_in_one_line() {
+    let folder = unfinished();
     let of_other = [
         (
             resume(&["--seed", "4"]),
@@ -168,6 +175,13 @@ fn states_that_do_not_fit_are_refused_in_one_line() {
     for (arguments, words) in of_other {
         refused(&folder, &arguments, words);
     }
+}
+
+#[test]
+fn a_state_that_is_cut_or_damaged_is_refused_in_one_line() {
+    let folder = unfinished();
+    let path = folder.path().join("run/session.state");
+    let whole = fs::read(&path).expect("a state");
     let mut newer = whole.clone();
     newer[8] = 9;
     let mut damaged = whole.clone();

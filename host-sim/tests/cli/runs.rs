@@ -1,43 +1,10 @@
-//! Runs: their files, their output, and their ends.
+//! Runs: their files and their output.
 
 use std::fs;
-use std::path::Path;
 
 use serde_json::Value;
 
-use crate::{folder, outcome, reports};
-
-const FILES: [&str; 8] = [
-    "commands.csv",
-    "map.pgm",
-    "map.yaml",
-    "mission.log",
-    "report.json",
-    "run.png",
-    "trajectory.tum",
-    "trajectory_truth.tum",
-];
-
-/// The files of a run that may go on.
-fn kept_files() -> Vec<&'static str> {
-    let mut files = FILES.to_vec();
-    files.insert(6, "session.state");
-    files
-}
-
-fn files(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).expect("a folder");
-    let name = |entry: std::io::Result<fs::DirEntry>| {
-        entry
-            .expect("readable")
-            .file_name()
-            .into_string()
-            .expect("text")
-    };
-    let mut names: Vec<String> = entries.map(name).collect();
-    names.sort();
-    names
-}
+use crate::{FILES, files, folder, kept_files, outcome, reports};
 
 #[test]
 fn without_arguments_it_explores_the_office() {
@@ -102,84 +69,6 @@ fn json_prints_one_report_per_line_and_nothing_else() {
         let file: Value = serde_json::from_str(&file).unwrap();
         assert_eq!(file, reports[report], "file and line are equal");
     }
-}
-
-#[test]
-fn a_team_takes_the_impatience_of_a_space_field() {
-    let folder = folder();
-    let impatience = |more: &[&str]| {
-        let args = [
-            "team",
-            "partition@1",
-            "--json",
-            "--force",
-            "--strategy",
-            "esbpf",
-        ];
-        let (_, stdout, _) = outcome(&folder, &[&args, more].concat());
-        let report: Value = serde_json::from_str(&stdout).expect("one report");
-        report["robots"][0]["space_field"]["impatience"].clone()
-    };
-    assert_eq!(impatience(&[]), "5");
-    assert_eq!(impatience(&["--sbpf-impatience", "never"]), "never");
-    assert_eq!(impatience(&["--sbpf-impatience", "20"]), "20");
-}
-
-#[test]
-fn a_space_field_ends_with_its_target_and_its_reason() {
-    let folder = folder();
-    let run = |strategy| {
-        let args = [
-            "explore",
-            "c-room",
-            "--json",
-            "--until",
-            "0.95",
-            "--strategy",
-            strategy,
-        ];
-        let (status, stdout, stderr) = outcome(&folder, &args);
-        let report: Value = serde_json::from_str(&stdout).expect("one report");
-        (status, stderr, report)
-    };
-    let (status, _, report) = run("esbpf");
-    assert_eq!(
-        (status, &report["outcome"]["reason"]),
-        (0, &"covered".into())
-    );
-    let field = &report["space_field"];
-    assert_eq!(field["area_m"], serde_json::json!([0.2, 0.2, 10.0, 10.0]));
-    assert_eq!(
-        (&field["until"], &field["impatience"]),
-        (&0.95.into(), &"5".into())
-    );
-    let (status, stderr, report) = run("sbpf");
-    assert_eq!(
-        (status, &report["outcome"]["reason"]),
-        (1, &"trapped".into())
-    );
-    assert!(stderr.contains("--sbpf-impatience 5"), "{stderr}");
-}
-
-#[test]
-fn one_world_goes_into_out_and_the_time_limit_ends_it() {
-    let folder = folder();
-    let arguments = [
-        "explore",
-        "hall",
-        "--time-limit",
-        "3",
-        "--json",
-        "--out",
-        "here",
-    ];
-    let (status, stdout, stderr) = outcome(&folder, &arguments);
-    assert_eq!(status, 1);
-    let report = &reports(&stdout)[0];
-    assert_eq!(report["outcome"]["status"], "time-limit");
-    assert_eq!(report["sim_time_s"], 3.0);
-    assert_eq!(files(&folder.path().join("here")), kept_files());
-    assert!(stderr.contains("allow more with --time-limit"), "{stderr}");
 }
 
 #[test]
@@ -307,26 +196,6 @@ fn the_link_and_its_faults_change_no_command() {
 }
 
 #[test]
-fn silence_or_a_reset_ends_the_run_with_a_typed_fault() {
-    let folder = folder();
-    for (fault, reason) in [("silent@60", "link-silent"), ("reset@60", "device-reset")] {
-        let arguments = ["explore", "loop", "--json", "--force", "--fault", fault];
-        let (status, stdout, stderr) = outcome(&folder, &arguments);
-        let report = &reports(&stdout)[0];
-        assert_eq!(status, 1);
-        assert_eq!(report["outcome"]["status"], "fault", "{fault}");
-        assert_eq!(report["outcome"]["reason"], reason, "{fault}");
-        assert_eq!(report["injected_faults"], fault);
-        assert_eq!(report["safety"]["collisions"], 0, "{fault}");
-        assert!(stderr.contains("host-sim: loop: "), "{stderr}");
-        assert_eq!(
-            files(&folder.path().join("out/loop-frontier-0")),
-            kept_files()
-        );
-    }
-}
-
-#[test]
 fn check_field_reports_the_heading_error() {
     let folder = folder();
     let arguments = [
@@ -347,63 +216,6 @@ fn check_field_reports_the_heading_error() {
         field["heading_error_deg"]["p50"].as_f64().unwrap() < 2.0,
         "{field}"
     );
-}
-
-/// The interrupt key stops the robot, and the program still writes the report.
-#[cfg(unix)]
-#[test]
-fn the_interrupt_key_ends_a_run_with_a_report() {
-    use std::process::{Command, Stdio};
-    let folder = folder();
-    let child = Command::new(env!("CARGO_BIN_EXE_host-sim"))
-        .args(["explore", "hall", "--realtime", "--json", "--out", "run"])
-        .current_dir(folder.path())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(core::time::Duration::from_secs(3));
-    let id = child.id().to_string();
-    assert!(
-        Command::new("kill")
-            .args(["-INT", &id])
-            .status()
-            .unwrap()
-            .success()
-    );
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1));
-    let report = reports(&String::from_utf8(output.stdout).unwrap()).remove(0);
-    assert_eq!(report["outcome"]["status"], "interrupted");
-    let time_s = report["sim_time_s"].as_f64().unwrap();
-    assert!(
-        time_s < 3.5,
-        "{time_s} s: faster than the clock on the wall"
-    );
-    assert_eq!(files(&folder.path().join("run")), kept_files());
-}
-
-/// The key ends the run in hand, and no further one begins.
-#[cfg(unix)]
-#[test]
-fn the_interrupt_key_begins_no_further_run() {
-    use std::process::{Command, Stdio};
-    let folder = folder();
-    let child = Command::new(env!("CARGO_BIN_EXE_host-sim"))
-        .args(["explore", "hall", "loop", "--realtime", "--json"])
-        .current_dir(folder.path())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(core::time::Duration::from_secs(3));
-    let id = child.id().to_string();
-    let status = Command::new("kill").args(["-INT", &id]).status();
-    assert!(status.unwrap().success());
-    let output = child.wait_with_output().unwrap();
-    let reports = reports(&String::from_utf8(output.stdout).unwrap());
-    assert_eq!(reports.len(), 1);
-    assert_eq!(reports[0]["world"], "hall");
 }
 
 #[test]
@@ -496,146 +308,4 @@ fn a_map_without_its_walls_says_so() {
         low < 0.1 && said.contains("% of the true walls are in the map"),
         "{low}: {said}"
     );
-}
-
-#[test]
-fn a_team_leaves_a_folder_of_its_own_and_one_of_each_robot() {
-    let folder = folder();
-    let arguments = [
-        "team",
-        "loop",
-        "--robots",
-        "2",
-        "--radio",
-        "loss=0.5",
-        "--time-limit",
-        "20",
-        "--json",
-    ];
-    let (status, stdout, stderr) = outcome(&folder, &arguments);
-    assert_eq!(status, 1, "{stderr}");
-    let report = &reports(&stdout)[0];
-    for key in ["world", "coverage", "digest", "sim_time_s", "planner"] {
-        assert!(!report[key].is_null(), "{key}");
-    }
-    assert_eq!(report["outcome"]["status"], "time-limit");
-    assert_eq!(report["link"], "loopback");
-    assert_eq!(report["robots"].as_array().unwrap().len(), 2);
-    assert_eq!(report["robots"][1]["robot"], 1);
-    assert!(report["robots"][1]["digest"].is_string());
-    assert!(report["safety"]["robot_contacts"].is_u64());
-    assert!(report["radio"]["sent_bytes"].as_u64().unwrap() > 0);
-    assert!(report["radio"]["lost"].as_u64().unwrap() > 0);
-    let run = folder.path().join("out/loop-frontier-team-2-0");
-    let of_team = [
-        "map.pgm",
-        "map.yaml",
-        "report.json",
-        "robot-0",
-        "robot-1",
-        "run.png",
-    ];
-    assert_eq!(files(&run), of_team);
-    assert_eq!(files(&run.join("robot-1")), FILES);
-}
-
-/// The second robot is told a wrong start, and finds out how its map lies in the team's.
-#[test]
-fn a_team_with_rough_starts_reports_what_its_maps_agree_on() {
-    let folder = folder();
-    let arguments = [
-        "team",
-        "hall",
-        "--link",
-        "direct",
-        "--odometry",
-        "noisy",
-        "--start-error",
-        "0.3,5",
-        "--time-limit",
-        "40",
-        "--json",
-    ];
-    let (_, stdout, stderr) = outcome(&folder, &arguments);
-    let report = &reports(&stdout).pop().expect(&stderr);
-    let team = &report["team"];
-    assert_eq!(team["start_error"], serde_json::json!([0.3, 5.0]));
-    assert!(report["robots"][1]["met_s"].as_f64().unwrap() > 0.0);
-    assert!(team["agreement"]["median_m"].as_f64().unwrap() < 0.1);
-    assert!(team["agreement"]["median_deg"].as_f64().unwrap() < 1.0);
-}
-
-#[test]
-fn a_robot_keeps_to_its_bounds_drives_to_a_goal_and_home() {
-    let folder = folder();
-    let args = [
-        "explore",
-        "office",
-        "--json",
-        "--bounds=6,3,18,11",
-        "--no-go=13.5,8,14.5,9",
-        "--goto=8,5",
-        "--then=home",
-    ];
-    let (status, stdout, stderr) = outcome(&folder, &args);
-    assert_eq!(status, 0, "{stderr}");
-    let report: Value = serde_json::from_str(&stdout).expect("one report");
-    assert_eq!(report["outcome"]["reason"], "explored");
-    assert!(report["fence"]["deepest_m"].as_f64().expect("metres") < 0.1);
-    let trips = report["trips"].as_array().expect("two trips");
-    let to: Vec<&Value> = trips.iter().map(|trip| &trip["to"]).collect();
-    assert_eq!(to, ["goal", "home"]);
-    for trip in trips {
-        assert_eq!(trip["reached"], true, "{trip}");
-        assert!(trip["error_m"].as_f64().expect("metres") <= 0.2, "{trip}");
-    }
-    assert!(trips[1]["error_deg"].as_f64().expect("degrees") <= 10.0);
-}
-
-#[test]
-fn a_robot_with_a_budget_is_home_before_it_is_spent() {
-    let folder = folder();
-    let args = ["explore", "office", "--json", "--range-m=40"];
-    let (status, stdout, stderr) = outcome(&folder, &args);
-    assert_eq!(status, 1, "{stderr}");
-    let report: Value = serde_json::from_str(&stdout).expect("one report");
-    assert_eq!(report["outcome"]["reason"], "at-home");
-    assert_eq!(report["trips"][0]["reached"], true);
-    let driven_m = report["path_length_m"].as_f64().expect("metres");
-    assert!((20.0..=40.0).contains(&driven_m), "{driven_m}");
-}
-
-/// The log tells the end and its reasons. Printed lines, file and report are one, on every link.
-#[test]
-fn the_log_of_the_mission_is_printed_and_kept() {
-    let folder = folder();
-    let log = |link: &str| {
-        let arguments = [
-            "explore",
-            "unreachable-room",
-            "--link",
-            link,
-            "--out",
-            link,
-            "--log",
-            "mission",
-            "--json",
-        ];
-        let (status, stdout, stderr) = outcome(&folder, &arguments);
-        assert_eq!(status, 0, "{stderr}");
-        let kept = fs::read_to_string(folder.path().join(link).join("mission.log"));
-        let kept = kept.expect("a log");
-        let printed: Vec<&str> = stderr.lines().filter(|it| it.contains(" s  (")).collect();
-        assert_eq!(printed, kept.lines().collect::<Vec<_>>());
-        let report = reports(&stdout).remove(0);
-        let entries = report["mission"].as_array().expect("entries");
-        assert_eq!(entries.len(), kept.lines().count().min(20));
-        kept
-    };
-    let told = log("direct");
-    assert_eq!(told, log("loopback"));
-    let last = told.lines().last().expect("a line");
-    assert!(last.ends_with("finished(explored)"), "{told}");
-    let why = "nothing is left to drive to, so it goes to look through a gap";
-    assert!(told.contains(why), "{told}");
 }

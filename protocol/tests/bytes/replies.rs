@@ -104,62 +104,74 @@ fn reply_control_with_every_status() {
     }
 }
 
+fn location() -> Location {
+    Location {
+        x: long(1.0),
+        y: long(-0.5),
+        yaw: long(0.25),
+        covariance: [1.0, 0.0, 2.0, 0.0, -0.5, 0.25].map(long),
+        quality: Quality::Degenerate {
+            direction: Some(short(0.5)),
+        },
+    }
+}
+
+fn cost() -> Cost {
+    Cost {
+        instructions: 1_000_000,
+        stages: Stages {
+            session: 1,
+            sense: 2,
+            topology: 3,
+            plan: 4,
+            window: 5,
+            solve: 128,
+            drive: 7,
+        },
+        stack_bytes: 4096,
+        cycles: 3,
+        budget_exhausted: true,
+    }
+}
+
+fn command() -> Command {
+    Command {
+        velocity: Twist {
+            linear: short(0.25),
+            angular: short(-1.0),
+        },
+        status: Status::Exploring,
+        doing: Doing::GoesBack,
+        events: Events(0x81),
+        heading: long(-0.5),
+        loops: Loops {
+            closing: true,
+            closed: 300,
+            given_up: 2,
+        },
+        forgot_arrivals: true,
+        input_faults: InputFaults {
+            refused: 5,
+            jumps: 6,
+            clock: 130,
+        },
+        map_epoch: 200,
+        location: Some(location()),
+        counters: Counters {
+            received: 200,
+            crc_errors: 1,
+            dropped: 2,
+            duplicates: 3,
+            stale_stops: 4,
+        },
+        cost: cost(),
+    }
+}
+
 #[test]
 fn reply_command() {
     reply_is(
-        Reply::Command(Command {
-            velocity: Twist {
-                linear: short(0.25),
-                angular: short(-1.0),
-            },
-            status: Status::Exploring,
-            doing: Doing::GoesBack,
-            events: Events(0x81),
-            heading: long(-0.5),
-            loops: Loops {
-                closing: true,
-                closed: 300,
-                given_up: 2,
-            },
-            forgot_arrivals: true,
-            input_faults: InputFaults {
-                refused: 5,
-                jumps: 6,
-                clock: 130,
-            },
-            map_epoch: 200,
-            location: Some(Location {
-                x: long(1.0),
-                y: long(-0.5),
-                yaw: long(0.25),
-                covariance: [1.0, 0.0, 2.0, 0.0, -0.5, 0.25].map(long),
-                quality: Quality::Degenerate {
-                    direction: Some(short(0.5)),
-                },
-            }),
-            counters: Counters {
-                received: 200,
-                crc_errors: 1,
-                dropped: 2,
-                duplicates: 3,
-                stale_stops: 4,
-            },
-            cost: Cost {
-                instructions: 1_000_000,
-                stages: Stages {
-                    session: 1,
-                    sense: 2,
-                    topology: 3,
-                    plan: 4,
-                    window: 5,
-                    solve: 128,
-                    drive: 7,
-                },
-                stack_bytes: 4096,
-                cycles: 3,
-                budget_exhausted: true,
-            },
-        }),
+        Reply::Command(command()),
         &[
             3, // Command
             0x80, 0x10, 0xff, 0x3f, // velocity

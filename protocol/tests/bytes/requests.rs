@@ -101,9 +101,8 @@ fn a_space_field_is_its_area_its_target_and_its_impatience() {
     }
 }
 
-#[test]
-fn request_control_start() {
-    let laser = Laser {
+fn laser() -> Laser {
+    Laser {
         x: short(0.5),
         y: short(-0.25),
         z: short(1.0),
@@ -112,47 +111,63 @@ fn request_control_start() {
         bearing_step: long(0.015_625),
         beams: 181,
         range_limit_mm: 12_000,
-    };
+    }
+}
+
+fn team() -> Team {
+    Team {
+        member: Member { id: 2, boot: 128 },
+        origin: (long(1.0), long(-0.5)),
+        yaw: long(0.0),
+        sd_mm: 300,
+        sd_mrad: 87,
+    }
+}
+
+fn fence() -> Fence {
+    Fence {
+        corners: [(0.0, 0.0), (1.0, 0.0), (0.0, -1.0)]
+            .into_iter()
+            .map(|(x, y)| (long(x), long(y)))
+            .collect(),
+        polygons: [FencePolygon {
+            corners: 3,
+            bounds: true,
+        }]
+        .into_iter()
+        .collect(),
+    }
+}
+
+fn start() -> Start {
+    Start {
+        strategy: Strategy::Frontier,
+        lasers: [laser()].into_iter().collect(),
+        hull: Hull::default(),
+        robot_radius_mm: 300,
+        max_linear: short(0.75),
+        max_angular: short(2.5),
+        linear_accel: short(0.25),
+        angular_accel: short(1.75),
+        period_ms: 200,
+        uneven_ground: None,
+        loops: LoopLimits::default(),
+        order: Order::Nearest { worth: I4F12::ZERO },
+        team: Some(team()),
+        localise: true,
+        survey: false,
+        fence: fence(),
+        budget: Budget {
+            range_m: None,
+            time_s: Some(600),
+        },
+    }
+}
+
+#[test]
+fn request_control_start() {
     request_is(
-        Request::Control(Control::Start(Start {
-            strategy: Strategy::Frontier,
-            lasers: [laser].into_iter().collect(),
-            hull: Hull::default(),
-            robot_radius_mm: 300,
-            max_linear: short(0.75),
-            max_angular: short(2.5),
-            linear_accel: short(0.25),
-            angular_accel: short(1.75),
-            period_ms: 200,
-            uneven_ground: None,
-            loops: LoopLimits::default(),
-            order: Order::Nearest { worth: I4F12::ZERO },
-            team: Some(Team {
-                member: Member { id: 2, boot: 128 },
-                origin: (long(1.0), long(-0.5)),
-                yaw: long(0.0),
-                sd_mm: 300,
-                sd_mrad: 87,
-            }),
-            localise: true,
-            survey: false,
-            fence: Fence {
-                corners: [(0.0, 0.0), (1.0, 0.0), (0.0, -1.0)]
-                    .into_iter()
-                    .map(|(x, y)| (long(x), long(y)))
-                    .collect(),
-                polygons: [FencePolygon {
-                    corners: 3,
-                    bounds: true,
-                }]
-                .into_iter()
-                .collect(),
-            },
-            budget: Budget {
-                range_m: None,
-                time_s: Some(600),
-            },
-        })),
+        Request::Control(Control::Start(start())),
         &[
             1, 0, // Control, Start
             0, // Frontier

@@ -204,25 +204,26 @@ pub(crate) fn check_five_starts(name: &str) {
     assert!(failed.is_empty(), "{failed:?}");
 }
 
+const COLUMNS: [&str; 14] = [
+    "world",
+    "strategy",
+    "runs",
+    "explored",
+    "stuck",
+    "time limit",
+    "contacts",
+    "s",
+    "error m",
+    "most m",
+    "end m",
+    "corrections",
+    "smaller than frontier",
+    "z",
+];
+
 /// Returns a row for each world and strategy, and one for all worlds.
 fn summary(reports: &[Report]) -> Table {
-    let heads = [
-        "world",
-        "strategy",
-        "runs",
-        "explored",
-        "stuck",
-        "time limit",
-        "contacts",
-        "s",
-        "error m",
-        "most m",
-        "end m",
-        "corrections",
-        "smaller than frontier",
-        "z",
-    ];
-    let mut table = Table::new(2, &heads);
+    let mut table = Table::new(2, &COLUMNS);
     for world in with_loops().into_iter().chain(["all"]) {
         let of = |strategy: &str| -> Vec<&Report> {
             let here = reports
@@ -232,40 +233,44 @@ fn summary(reports: &[Report]) -> Table {
         };
         let other = errors(&of("frontier"));
         for strategy in STRATEGIES {
-            let runs = of(strategy);
-            let ends = |reason: &str| {
-                let ended = runs.iter().filter(|it| it.outcome.reason == reason);
-                ended.count().to_string()
-            };
-            let own = errors(&runs);
-            let smaller = own.iter().zip(&other).filter(|(own, other)| own < other);
-            let [smaller, z] = if strategy == "frontier" {
-                ["-".into(), "-".into()]
-            } else {
-                let z = signed_rank(&own, &other);
-                [smaller.count().to_string(), number(z, 1)]
-            };
-            let contacts: u32 = runs.iter().map(|it| it.safety.collisions).sum();
-            let corrections = |it: &Report| it.slam.as_ref().map(|slam| slam.corrections as f64);
-            table.row(vec![
-                world.into(),
-                strategy.into(),
-                runs.len().to_string(),
-                ends("explored"),
-                ends("stuck"),
-                ends("simulated-time"),
-                contacts.to_string(),
-                number(mean(&runs, |it| Some(it.sim_time_s)), 0),
-                number(mean(&runs, |it| it.localization.mean_error_m), 3),
-                number(mean(&runs, |it| it.localization.max_error_m), 2),
-                number(mean(&runs, |it| it.localization.end_error_m), 3),
-                number(mean(&runs, corrections), 0),
-                smaller,
-                z,
-            ]);
+            table.row(row(world, strategy, &of(strategy), &other));
         }
     }
     table
+}
+
+/// Returns the row of a strategy in a world; `other` are the errors of *frontier* there.
+fn row(world: &str, strategy: &str, runs: &[&Report], other: &[f64]) -> Vec<String> {
+    let ends = |reason: &str| {
+        let ended = runs.iter().filter(|it| it.outcome.reason == reason);
+        ended.count().to_string()
+    };
+    let own = errors(runs);
+    let smaller = own.iter().zip(other).filter(|(own, other)| own < other);
+    let [smaller, z] = if strategy == "frontier" {
+        ["-".into(), "-".into()]
+    } else {
+        let z = signed_rank(&own, other);
+        [smaller.count().to_string(), number(z, 1)]
+    };
+    let contacts: u32 = runs.iter().map(|it| it.safety.collisions).sum();
+    let corrections = |it: &Report| it.slam.as_ref().map(|slam| slam.corrections as f64);
+    vec![
+        world.into(),
+        strategy.into(),
+        runs.len().to_string(),
+        ends("explored"),
+        ends("stuck"),
+        ends("simulated-time"),
+        contacts.to_string(),
+        number(mean(runs, |it| Some(it.sim_time_s)), 0),
+        number(mean(runs, |it| it.localization.mean_error_m), 3),
+        number(mean(runs, |it| it.localization.max_error_m), 2),
+        number(mean(runs, |it| it.localization.end_error_m), 3),
+        number(mean(runs, corrections), 0),
+        smaller,
+        z,
+    ]
 }
 
 fn errors(reports: &[&Report]) -> Vec<f64> {

@@ -7,14 +7,13 @@
 use fieldline_tests::random::Random;
 use fieldline_tests::runs::{explored, in_parallel};
 use fieldline_tests::table::{Table, number};
-use fieldline_tests::{golden, worlds};
+use fieldline_tests::{fences, golden, worlds};
 use host_sim::fence::{Fence, Polygon};
 use host_sim::link::direct::Direct;
 use host_sim::report::{Report, Trip};
-use host_sim::robot::{Footprint, Pose};
 use host_sim::trial::itinerary::Orders;
 use host_sim::trial::mission::{Mission, OdometryProfile};
-use host_sim::world::{Start, World};
+use host_sim::world::World;
 
 const WORLDS: [&str; 5] = ["office", "cave", "hall", "cluttered", "loop"];
 const STRATEGIES: [&str; 5] = ["frontier", "ouroboros", "tdbvp", "sbpf", "esbpf"];
@@ -76,53 +75,23 @@ fn home(report: &Report) -> Option<&Trip> {
     report.trips.iter().find(|trip| trip.to == "home")
 }
 
-/// Draws a fence with which a robot may stand at the world's first start: star-shaped bounds, and
-/// up to three triangles.
+/// Draws a fence around the world's first start: bounds, and up to three triangles, with corners in
+/// whole millimetres.
 fn fence(world: &World, seed: u64) -> Fence {
     let mut random = Random::mixed(seed);
-    let start = world.starts()[0];
-    let pose = Pose {
-        x_m: start.x_m,
-        y_m: start.y_m,
-        yaw_rad: start.yaw_rad,
-        ..Pose::default()
-    };
-    loop {
-        let bounds = star(&mut random, &start, 0.0, (2.5, 9.0), 7);
-        let no_go = (0..random.below(4)).map(|_| star(&mut random, &start, 4.0, (0.1, 1.5), 3));
-        let fence = Fence {
-            no_go: no_go.collect(),
-            bounds: vec![bounds],
-        };
-        let may_stand = fence.check_start(&Footprint::PIONEER_3AT, &pose);
-        if fence.check().is_ok() && may_stand.is_ok() {
-            return fence;
-        }
-    }
+    fences::around(world, |start| Fence {
+        bounds: vec![polygon(&fences::bounds(&mut random, start))],
+        no_go: fences::no_go(&mut random, start)
+            .iter()
+            .map(|corners| polygon(corners))
+            .collect(),
+    })
 }
 
-/// Draws a star-shaped polygon whose middle is at most `off_m` from the start along each axis.
-fn star(
-    random: &mut Random,
-    start: &Start,
-    off_m: f64,
-    (least_m, most_m): (f64, f64),
-    corners: u32,
-) -> Polygon {
-    let mut off = || off_m * (2.0 * random.unit() - 1.0);
-    let (x, y) = (start.x_m + off(), start.y_m + off());
-    let turn = random.angle();
-    let corners: Vec<String> = (0..corners)
-        .map(|k| {
-            let angle = turn + core::f64::consts::TAU * f64::from(k) / f64::from(corners);
-            let reach = least_m + (most_m - least_m) * random.unit();
-            format!(
-                "{:.3},{:.3}",
-                x + reach * angle.cos(),
-                y + reach * angle.sin()
-            )
-        })
-        .collect();
+/// Returns the polygon that a user gives with these corners.
+fn polygon(corners: &[[f64; 2]]) -> Polygon {
+    let corners = corners.iter().map(|[x, y]| format!("{x:.3},{y:.3}"));
+    let corners: Vec<String> = corners.collect();
     corners.join(",").parse().expect("corners")
 }
 

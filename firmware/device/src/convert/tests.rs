@@ -8,8 +8,7 @@ use fieldline_planner::{
 };
 use fieldline_protocol::message as wire;
 use fieldline_protocol::message::{
-    Control, Hull, Laser, LoopLimits, Observation, Order, Parameter, Refusal, Scan, Start, Team,
-    UnevenGround,
+    Control, Hull, Laser, Observation, Order, Parameter, Refusal, Scan, Start, Team, UnevenGround,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -44,173 +43,122 @@ fn good_parameters_are_accepted() {
     assert_eq!(checked(&with_laser(upward)), Ok(()));
 }
 
+fn with(change: impl Fn(&mut Start)) -> Start {
+    let mut start = start();
+    change(&mut start);
+    start
+}
+
+/// Asserts that each start is refused for its parameter.
+fn are_refused(cases: &[(Start, Parameter)]) {
+    for (start, parameter) in cases {
+        let refused = Err(Refusal::BadParameter(*parameter));
+        assert_eq!(checked(start), refused, "{start:?}");
+    }
+}
+
 #[test]
-fn every_limit_is_checked() {
-    let bad = |parameter| Err(Refusal::BadParameter(parameter));
-    let cases: &[(Start, Parameter)] = &[
+fn every_limit_of_the_robot_is_checked() {
+    are_refused(&[
+        (with(|it| it.lasers.clear()), Parameter::Lasers),
+        (with(|it| it.hull.width_mm = 0), Parameter::Hull),
+        (with(|it| it.hull.length_mm = 4001), Parameter::Hull),
+        (with(|it| it.robot_radius_mm = 49), Parameter::Radius),
+        (with(|it| it.robot_radius_mm = 601), Parameter::Radius),
+        (with(|it| it.max_linear = I4F12::ZERO), Parameter::MaxLinear),
         (
-            Start {
-                lasers: heapless::Vec::new(),
-                ..start()
-            },
-            Parameter::Lasers,
-        ),
-        (
-            Start {
-                hull: Hull {
-                    width_mm: 0,
-                    ..Hull::default()
-                },
-                ..start()
-            },
-            Parameter::Hull,
-        ),
-        (
-            Start {
-                hull: Hull {
-                    length_mm: 4001,
-                    ..Hull::default()
-                },
-                ..start()
-            },
-            Parameter::Hull,
-        ),
-        (
-            Start {
-                loops: LoopLimits {
-                    detour: -I16F16::DELTA,
-                    ..LoopLimits::default()
-                },
-                ..start()
-            },
-            Parameter::LoopLimits,
-        ),
-        (
-            Start {
-                order: Order::Gain {
-                    worth: -I4F12::DELTA,
-                },
-                ..start()
-            },
-            Parameter::Worth,
-        ),
-        (
-            Start {
-                team: Some(Team {
-                    origin: (I16F16::from_num(401), I16F16::ZERO),
-                    ..Team::default()
-                }),
-                ..start()
-            },
-            Parameter::Team,
-        ),
-        (
-            Start {
-                robot_radius_mm: 49,
-                ..start()
-            },
-            Parameter::Radius,
-        ),
-        (
-            Start {
-                robot_radius_mm: 601,
-                ..start()
-            },
-            Parameter::Radius,
-        ),
-        (
-            Start {
-                max_linear: I4F12::ZERO,
-                ..start()
-            },
-            Parameter::MaxLinear,
-        ),
-        (
-            Start {
-                max_angular: -I4F12::DELTA,
-                ..start()
-            },
+            with(|it| it.max_angular = -I4F12::DELTA),
             Parameter::MaxAngular,
         ),
         (
-            Start {
-                // 0.7 m/s in slightly more than 3 s.
-                linear_accel: I4F12::lit("0.233"),
-                ..start()
-            },
+            // 0.7 m/s in slightly more than 3 s.
+            with(|it| it.linear_accel = I4F12::lit("0.233")),
             Parameter::LinearAccel,
         ),
         (
-            Start {
-                linear_accel: I4F12::MIN,
-                ..start()
-            },
+            with(|it| it.linear_accel = I4F12::MIN),
             Parameter::LinearAccel,
         ),
         (
-            Start {
-                angular_accel: I4F12::lit("0.813"),
-                ..start()
-            },
+            with(|it| it.angular_accel = I4F12::lit("0.813")),
             Parameter::AngularAccel,
         ),
+        (with(|it| it.period_ms = 99), Parameter::Period),
+        (with(|it| it.period_ms = 401), Parameter::Period),
+    ]);
+}
+
+#[test]
+fn every_limit_of_the_strategy_and_the_team_is_checked() {
+    are_refused(&[
         (
-            Start {
-                period_ms: 99,
-                ..start()
-            },
-            Parameter::Period,
+            with(|it| it.loops.detour = -I16F16::DELTA),
+            Parameter::LoopLimits,
         ),
         (
-            Start {
-                period_ms: 401,
-                ..start()
-            },
-            Parameter::Period,
+            with(|it| {
+                it.order = Order::Gain {
+                    worth: -I4F12::DELTA,
+                };
+            }),
+            Parameter::Worth,
         ),
-        (with_laser(|laser| laser.beams = 0), Parameter::Beams),
-        (with_laser(|laser| laser.beams = 182), Parameter::Beams),
         (
-            with_laser(|laser| laser.range_limit_mm = 0),
+            with(|it| {
+                it.team = Some(Team {
+                    origin: (I16F16::from_num(401), I16F16::ZERO),
+                    ..Team::default()
+                });
+            }),
+            Parameter::Team,
+        ),
+    ]);
+}
+
+#[test]
+fn every_limit_of_a_laser_is_checked() {
+    are_refused(&[
+        (with_laser(|it| it.beams = 0), Parameter::Beams),
+        (with_laser(|it| it.beams = 182), Parameter::Beams),
+        (
+            with_laser(|it| it.range_limit_mm = 0),
             Parameter::RangeLimit,
         ),
         (
-            with_laser(|laser| laser.range_limit_mm = 16_383),
+            with_laser(|it| it.range_limit_mm = 16_383),
             Parameter::RangeLimit,
         ),
         (
-            with_laser(|laser| laser.bearing_step = I16F16::ZERO),
+            with_laser(|it| it.bearing_step = I16F16::ZERO),
             Parameter::Bearing,
         ),
         (
-            with_laser(|laser| laser.bearing_step = I16F16::lit("0.04")),
+            with_laser(|it| it.bearing_step = I16F16::lit("0.04")),
             Parameter::Bearing,
         ),
         (
-            with_laser(|laser| laser.bearing_step = I16F16::MAX),
+            with_laser(|it| it.bearing_step = I16F16::MAX),
             Parameter::Bearing,
         ),
         (
-            with_laser(|laser| laser.first_bearing = I16F16::lit("-7")),
+            with_laser(|it| it.first_bearing = I16F16::lit("-7")),
             Parameter::Bearing,
         ),
         (
-            with_laser(|laser| laser.pitch = I4F12::lit("-0.1")),
+            with_laser(|it| it.pitch = I4F12::lit("-0.1")),
             Parameter::Pitch,
         ),
         (
-            with_laser(|laser| laser.pitch = I4F12::lit("1.6")),
+            with_laser(|it| it.pitch = I4F12::lit("1.6")),
             Parameter::Pitch,
         ),
-        (with_laser(|laser| laser.z = I4F12::ZERO), Parameter::Mount),
-        (with_laser(|laser| laser.x = I4F12::MIN), Parameter::Mount),
-    ];
-    for (start, parameter) in cases {
-        assert_eq!(checked(start), bad(*parameter), "{start:?}");
-    }
-    let mut tilted = start();
-    tilted.lasers[0].pitch = I4F12::lit("0.35");
-    assert_eq!(checked(&tilted), bad(Parameter::Pitch));
+        (with_laser(|it| it.z = I4F12::ZERO), Parameter::Mount),
+        (with_laser(|it| it.x = I4F12::MIN), Parameter::Mount),
+        (
+            with(|it| it.lasers[0].pitch = I4F12::lit("0.35")),
+            Parameter::Pitch,
+        ),
+    ]);
 }
 
 /// The planner holds radii of 50 to 600 mm. The wire accepts the same radii and no others.

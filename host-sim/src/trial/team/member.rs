@@ -11,24 +11,22 @@
 //! and hears nothing. Joining again is a new session of its planner: a new boot, an empty map.
 //! After a broken link the robot's watchdog stops it, and it is silent for good.
 
-use fieldline_protocol::message::{
-    self as wire, Command, Control, Finish, Observation, Status, Twist,
-};
+use fieldline_protocol::message::{self as wire, Control, Finish, Status, Twist};
 use fieldline_protocol::packet::decode_packet;
 
 use super::super::account::Account;
 use super::super::freeze::FreezeDetector;
 use super::super::itinerary::Itinerary;
-use super::super::record::{self, Record};
+use super::super::record::Record;
 use super::super::series::Series;
 use super::super::snapshot::{self, Snapshot};
-use super::super::{Body, Cast, Corrector, Ending, MapCopy, Setup, Survey, ended, step};
+use super::super::{Cast, Corrector, Ending, Setup, ended, step};
 use super::copy::TeamCopy;
+use super::seat::{Seat, Witness};
 use crate::link::said::Said;
 use crate::link::{Link, LinkError};
 use crate::metrics::Coverage;
 use crate::radio::{Radio, Station};
-use crate::report::tum::Stamped;
 use crate::sim::{Fleet, Loss};
 use crate::slam::{LoopCloser, SlamReport};
 
@@ -336,7 +334,7 @@ impl<'a> Member<'a> {
         {
             self.record.read_out_error = Some(error);
         }
-        self.record.link_stats = self.link.stats();
+        self.record.link_stats = self.link.end().stats();
     }
 
     /// Returns the member of the wire with this number.
@@ -356,53 +354,5 @@ impl<'a> Member<'a> {
             self.record.ending,
             Ending::Finished(Finish::Explored | Finish::Covered)
         )
-    }
-}
-
-/// One robot of a fleet as a body. It drives with the fleet, never alone.
-struct Seat<'a, 'w> {
-    fleet: &'a mut Fleet<'w>,
-    robot: usize,
-}
-
-impl Body for Seat<'_, '_> {
-    fn period_ms(&self) -> u32 {
-        self.fleet.robots()[self.robot].config().period_ms
-    }
-
-    fn observe(&mut self) -> Observation {
-        self.fleet.observe(self.robot)
-    }
-
-    fn drive(&mut self, _: Option<Twist>) {}
-
-    fn truth(&self) -> Stamped {
-        let robot = &self.fleet.robots()[self.robot];
-        record::stamped(robot.time_ms(), &robot.above_start(robot.pose()).to_wire())
-    }
-}
-
-/// Counts what a robot measures for the robot and for the team.
-struct Witness<'a> {
-    own: &'a mut Account,
-    all: &'a mut Coverage,
-    /// The copy of the device's map, if it is corrected.
-    copy: Option<&'a mut TeamCopy>,
-}
-
-impl Survey for Witness<'_> {
-    fn note(&mut self, observation: &Observation, truth: &Stamped, command: &Command) -> f64 {
-        let fraction = self.own.note(observation, truth, command);
-        if let Some(copy) = &mut self.copy {
-            copy.observe(observation, command);
-        }
-        let time_s = f64::from(observation.time_ms) / 1000.0;
-        let own = &self.own;
-        self.all.update(time_s, |cell| own.has_seen(cell));
-        fraction
-    }
-    fn copy(&mut self) -> Option<&mut dyn MapCopy> {
-        let copy = self.copy.as_mut()?;
-        Some(&mut **copy)
     }
 }

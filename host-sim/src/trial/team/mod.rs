@@ -11,13 +11,14 @@
 
 mod agreement;
 mod copy;
+mod error;
 mod member;
 mod misplaced;
+mod seat;
+mod settings;
 mod starts;
 mod summary;
 mod timetable;
-
-use thiserror::Error;
 
 use fieldline_protocol::message as wire;
 
@@ -26,13 +27,15 @@ use super::mission::{self, Mission, MissionError};
 use super::{Ending, Flow, Progress, REST_MS, Record, Watch};
 use crate::link::Link;
 use crate::metrics::Coverage;
-use crate::radio::{MOST_ROBOTS, Radio, RadioSpec, Station};
+use crate::radio::{MOST_ROBOTS, Radio, Station};
 use crate::report::{GridMap, TeamReport};
-use crate::sim::{Fleet, FleetError, SimConfig, Simulator};
+use crate::sim::{Fleet, SimConfig, Simulator};
 use crate::slam::SlamPlace;
-use crate::world::{Start, World, WorldError};
+use crate::world::{Start, World};
+pub use error::TeamError;
 use member::{Common, Member, Presence};
 pub use misplaced::StartError;
+pub use settings::TeamMission;
 use starts::Places;
 pub use timetable::{Appointment, Timetable, TimetableError};
 
@@ -45,107 +48,6 @@ pub const QUIET_MS: u32 = 5_000;
 /// Greatest time for the last exchange, milliseconds. With half of the packets lost a tile needs
 /// eight digests in the mean.
 pub const MOST_SETTLE_MS: u32 = 180_000;
-
-/// Settings of a team's run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TeamMission {
-    /// What all robots have in common. The first robot stands at its start and has its seed.
-    pub mission: Mission,
-    /// Number of robots, 1 to [`MOST_ROBOTS`].
-    pub robots: usize,
-    /// Names of the links, robot by robot, for the report.
-    pub links: Vec<String>,
-    /// True if the robots start far apart, false if side by side.
-    pub apart: bool,
-    /// Starts of all robots to use instead of those.
-    pub places: Option<Vec<Start>>,
-    /// Errors of the starts that all robots but the first are told.
-    pub start_error: StartError,
-    /// The radio between them. If it is off, the planners know of no team.
-    pub radio: RadioSpec,
-    /// Who leaves and who joins again.
-    pub timetable: Timetable,
-}
-
-impl TeamMission {
-    /// A team of robots by direct links, side by side, with a perfect radio.
-    #[must_use]
-    pub fn of(mission: Mission, robots: usize) -> Self {
-        Self {
-            links: vec![mission.link.clone(); robots],
-            mission,
-            robots,
-            apart: false,
-            places: None,
-            start_error: StartError::default(),
-            radio: RadioSpec::default(),
-            timetable: Timetable::default(),
-        }
-    }
-
-    /// The mission of one robot.
-    fn mission_of(&self, robot: usize, place: Start) -> Mission {
-        Mission {
-            link: self.links.get(robot).cloned().unwrap_or_default(),
-            seed: seed_of(self.mission.seed, robot),
-            place: Some(place),
-            ..self.mission.clone()
-        }
-    }
-}
-
-/// The seed of a robot's noise: the run's for the first, and far from it for the others.
-fn seed_of(seed: u64, robot: usize) -> u64 {
-    seed.wrapping_add((robot as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15))
-}
-
-/// Reason why a team's run could not begin.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum TeamError {
-    /// There are too few robots or too many.
-    #[error("a team of {0} robots is not possible; give 1 to {MOST_ROBOTS}")]
-    Robots(usize),
-    /// Not all robots find a place to start.
-    #[error(
-        "only {fitting} of {robots} robots find room {}; take fewer robots, or another --start{}",
-        if *apart { "apart" } else { "side by side" },
-        if *apart { "" } else { ", or say --apart" }
-    )]
-    Room {
-        /// Robots that do.
-        fitting: usize,
-        /// Robots of the team.
-        robots: usize,
-        /// True if they were to start far apart.
-        apart: bool,
-    },
-    /// The timetable is impossible.
-    #[error(transparent)]
-    Timetable(TimetableError),
-    /// The radio names a robot that the team does not have.
-    #[error("a partition of the radio names robot {0}, which the team does not have")]
-    Stranger(usize),
-    /// Robots do not fit at their starts.
-    #[error(transparent)]
-    Fleet(FleetError),
-    /// A robot cannot begin.
-    #[error("robot {robot}: {error}")]
-    Robot {
-        /// Its number.
-        robot: usize,
-        /// The reason.
-        error: MissionError,
-    },
-}
-
-impl From<WorldError> for TeamError {
-    fn from(error: WorldError) -> Self {
-        Self::Robot {
-            robot: 0,
-            error: error.into(),
-        }
-    }
-}
 
 /// The records of a team's run.
 #[derive(Clone, Debug)]

@@ -87,8 +87,8 @@ fn budget() -> impl Strategy<Value = Budget> {
     any::<(Option<u16>, Option<u16>)>().prop_map(|(range_m, time_s)| Budget { range_m, time_s })
 }
 
-fn start() -> impl Strategy<Value = Start> {
-    let strategy = prop_oneof![
+fn strategy() -> impl Strategy<Value = message::Strategy> {
+    prop_oneof![
         Just(message::Strategy::Frontier),
         Just(message::Strategy::Ouroboros),
         any::<(u16, Option<u16>)>().prop_map(|(patrol_s, impatience_s)| message::Strategy::Tdbvp {
@@ -97,10 +97,13 @@ fn start() -> impl Strategy<Value = Start> {
         }),
         space_field().prop_map(message::Strategy::Sbpf),
         space_field().prop_map(message::Strategy::Esbpf),
-    ];
+    ]
+}
+
+fn start() -> impl Strategy<Value = Start> {
     (
         (
-            strategy,
+            strategy(),
             any::<(bool, bool)>(),
             prop::option::of(uneven_ground()),
             prop::option::of(team()),
