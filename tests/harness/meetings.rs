@@ -23,6 +23,7 @@ use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
     Packet, Path, Refusal, ResidualFrontier, Status, Tile, Twist,
 };
+use host_sim::link::cycles::StepCost;
 use host_sim::link::inside::Inside;
 use host_sim::link::{Link, LinkError, LinkStats};
 use host_sim::report::TeamReport;
@@ -311,6 +312,10 @@ impl Link for Ordered {
     }
 
     fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        None
+    }
+
+    fn cycles(&mut self) -> Option<StepCost> {
         None
     }
 

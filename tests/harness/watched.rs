@@ -5,6 +5,7 @@ use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
     Packet, Path, ResidualFrontier, Status, Tile,
 };
+use host_sim::link::cycles::StepCost;
 use host_sim::link::inside::Inside;
 use host_sim::link::{Link, LinkError, LinkStats};
 
@@ -79,6 +80,10 @@ where
         self.link.inside()
     }
 
+    fn cycles(&mut self) -> Option<StepCost> {
+        self.link.cycles()
+    }
+
     fn stats(&self) -> LinkStats {
         self.link.stats()
     }
@@ -146,6 +151,12 @@ mod tests {
             None
         }
 
+        fn cycles(&mut self) -> Option<StepCost> {
+            let mut cost = StepCost::default();
+            cost.stages[0].cycles = 7;
+            Some(cost)
+        }
+
         fn stats(&self) -> LinkStats {
             LinkStats::default()
         }
@@ -183,5 +194,6 @@ mod tests {
             Err(LinkError::Refused("tile 6".into()))
         );
         assert_eq!(link.take_log(), [1, 2, 3]);
+        assert_eq!(link.cycles().map(|cost| cost.cycles()), Some(7));
     }
 }

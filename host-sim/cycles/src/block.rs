@@ -142,7 +142,7 @@ mod tests {
         let block = Block::new(0x0800_000c, &run);
         assert_eq!(block.lines, [(Some(0), 1), (Some(1), 2)]);
         assert_eq!((block.end, block.ending), (0x0800_0014, End::Indirect));
-        assert_eq!(Block::new(0x0800_000e, &run[1..]).splits, true);
+        assert!(Block::new(0x0800_000e, &run[1..]).splits);
     }
 
     #[test]

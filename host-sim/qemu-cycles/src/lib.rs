@@ -8,12 +8,11 @@
 //! its reply ([`StepCost::to_bytes`](fieldline_cycles::steps::StepCost::to_bytes)). It changes
 //! nothing in the emulated chip: it only looks at instructions and addresses.
 //!
-//! QEMU calls [`api::qemu_plugin_install`] once. For each block that it translates it then calls
-//! [`callbacks::translated`], for each block that runs [`callbacks::executed`], and for each access
-//! to memory [`callbacks::accessed`]. All three are called by the thread of the only core, which owns
-//! the model.
+//! QEMU calls [`api::qemu_plugin_install`] once. Then the thread of the only core, which owns the
+//! model, calls three functions of `callbacks`: for each block that QEMU translates, for each block
+//! that runs, and for each access to memory.
 //!
-//! All unsafe code is here: [`api`] has QEMU's functions, each behind one safe function.
+//! All unsafe code is in [`api`], which has QEMU's functions, each behind one safe function.
 
 pub mod api;
 mod callbacks;

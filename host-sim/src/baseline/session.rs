@@ -36,6 +36,7 @@ use fieldline_protocol::message::{
 use super::chart::Chart;
 use super::heights::HeightGrid;
 use super::strategy::{Outcome, Scene, Strategy, UnevenScene};
+use crate::link::cycles::StepCost;
 use crate::link::inside::Inside;
 use crate::link::{Link, LinkError, LinkStats};
 
@@ -405,6 +406,10 @@ impl<S: Strategy> Link for Session<S> {
 
     /// A baseline has neither path nor skeleton, and its map is the host's copy.
     fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        None
+    }
+
+    fn cycles(&mut self) -> Option<StepCost> {
         None
     }
 

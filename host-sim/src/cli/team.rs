@@ -26,7 +26,7 @@ use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
 use super::robot::RobotArgs;
 use super::values::{impatience, seed, slam_place, start, time_limit, until};
-use super::{made_by, note, note_build, say, strategies};
+use super::{cycles, made_by, note, note_build, say, strategies};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct TeamArgs {
@@ -259,6 +259,7 @@ fn open(args: &TeamArgs, links: &[LinkSpec]) -> Result<Vec<Box<dyn Link>>> {
             seed: args.seed,
             real_time: args.realtime,
             tuning: args.robot.tuning(link)?,
+            cycles: cycles(link),
             ..Options::default()
         };
         strategies::open(&args.strategy, link, &options, Relaxation::DEFAULT)

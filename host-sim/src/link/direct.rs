@@ -8,6 +8,7 @@ use fieldline_protocol::message::{
     Packet, Path, Refusal, ResidualFrontier, Status, Tile,
 };
 
+use super::cycles::StepCost;
 use super::inside::{Inside, Look};
 use super::{Link, LinkError, LinkStats};
 
@@ -128,6 +129,10 @@ impl Link for Direct {
             state: &*self.state,
             workspace: &self.workspace,
         }))
+    }
+
+    fn cycles(&mut self) -> Option<StepCost> {
+        None
     }
 
     /// Every call counts as one frame sent and one received.

@@ -18,6 +18,7 @@ use fieldline_protocol::message::{
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 
+use super::cycles::StepCost;
 use super::inside::Inside;
 use super::line::Line;
 use super::{Link, LinkError, LinkStats};
@@ -342,6 +343,10 @@ impl<L: Line> Link for Endpoint<L> {
 
     fn inside(&self) -> Option<Box<dyn Inside + '_>> {
         self.line.inside()
+    }
+
+    fn cycles(&mut self) -> Option<StepCost> {
+        self.line.cycles()
     }
 
     fn stats(&self) -> LinkStats {

@@ -36,6 +36,7 @@ use fieldline_protocol::message::{
 use fieldline_protocol::packet::decode_packet;
 use serde::{Deserialize, Serialize};
 
+use crate::link::cycles::StepCost;
 use crate::link::inside::Inside;
 use crate::link::said::Said;
 use crate::link::{Link, LinkError, LinkStats};
@@ -287,6 +288,10 @@ impl Link for Networked {
 
     fn inside(&self) -> Option<Box<dyn Inside + '_>> {
         self.link.inside()
+    }
+
+    fn cycles(&mut self) -> Option<StepCost> {
+        self.link.cycles()
     }
 
     fn stats(&self) -> LinkStats {

@@ -21,6 +21,7 @@ use fieldline_protocol::message::{
 use serde::{Deserialize, Serialize};
 
 use crate::link::correction::MapCorrection;
+use crate::link::cycles::StepCost;
 use crate::link::inside::Inside;
 use crate::link::{Link, LinkError, LinkStats};
 
@@ -229,6 +230,10 @@ impl Link for Recorder<'_> {
 
     fn inside(&self) -> Option<Box<dyn Inside + '_>> {
         self.link.inside()
+    }
+
+    fn cycles(&mut self) -> Option<StepCost> {
+        self.link.cycles()
     }
 
     fn stats(&self) -> LinkStats {
