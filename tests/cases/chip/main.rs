@@ -8,6 +8,7 @@ mod flat;
 mod full;
 mod loops;
 mod matrix;
+mod milliseconds;
 mod sessions;
 mod size;
 mod space;
