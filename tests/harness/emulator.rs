@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use host_sim::link::endpoint::{Endpoint, RetryPolicy};
 use host_sim::link::qemu::{self, QemuLine};
-use host_sim::link::{LinkError, image};
+use host_sim::link::{LinkError, cycles, image};
 
 /// Builds the image.
 ///
@@ -25,6 +25,17 @@ pub fn image() -> PathBuf {
 #[must_use]
 pub fn chip(image: &Path) -> Endpoint<QemuLine> {
     Endpoint::new(expect(qemu::open_line(image)), RetryPolicy::LOCKSTEP, 1)
+}
+
+/// As [`chip`], with the plugin that counts cycles.
+///
+/// # Panics
+/// If QEMU cannot be started, or the plugin cannot be built or loaded.
+#[must_use]
+pub fn watched_chip(image: &Path) -> Endpoint<QemuLine> {
+    let plugin = expect(cycles::plugin());
+    let line = qemu::open_watched(image, plugin);
+    Endpoint::new(expect(line), RetryPolicy::LOCKSTEP, 1)
 }
 
 fn expect<T>(found: Result<T, LinkError>) -> T {

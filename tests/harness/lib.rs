@@ -29,6 +29,7 @@
 //! | [`field`] | seeded windows of the field, and their solution in f64 |
 //! | [`plot`] | lines over a pair of axes, as an SVG |
 //! | [`costs`] | instructions of a step on the emulated chip |
+//! | [`milliseconds`] | milliseconds of a step, by the model of the chip's cycles |
 //! | [`emulator`] | the image for the chip, and QEMU |
 //! | [`elf`] | flash and memory that an image takes |
 //! | [`stack`] | bound of the stack that an image takes, from its machine code |
@@ -53,6 +54,7 @@ pub mod golden;
 pub mod history;
 pub mod loops;
 pub mod meetings;
+pub mod milliseconds;
 pub mod odometry;
 pub mod orders;
 pub mod places;

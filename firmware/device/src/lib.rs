@@ -23,7 +23,7 @@ pub mod ring;
 pub mod session;
 pub mod signal;
 
-pub use meter::Meter;
+pub use meter::{Mark, Meter};
 pub use pilot::{Memory, Pilot};
 pub use session::{Boot, Session};
 

@@ -1,9 +1,12 @@
 //! Cost of a step, counted by the board and split into stages.
 //!
-//! A `Stopwatch` connects the board's counter to the planner's stages. It starts when a request is
-//! complete, so decoding the request counts too. The cost of encoding a reply is known only after
-//! the reply is written, so it counts in the next step. Receiving single bytes does not count,
-//! because it continues as long as the line is busy.
+//! A `Stopwatch` connects the board's counter to the planner's stages. A [`Mark`] is a point at
+//! which the counter is read: what was counted since the last mark belongs to the stage that the
+//! new one ends. The emulated board shows its marks to whoever watches it, so that a model of the
+//! chip's cycles divides them among the same stages. The watch starts when a request is complete,
+//! so decoding the request counts too. The cost of encoding a reply is known only after the reply
+//! is written, so it counts in the next step. Receiving single bytes does not count, because it
+//! continues as long as the line is busy.
 //!
 //! Invariant: a cost's instructions are the sum of its stages. Units: instructions in the emulator,
 //! where they are exact; on silicon the board defines the unit.
@@ -17,10 +20,38 @@ pub trait Meter {
     fn start(&mut self);
     /// The step has ended.
     fn stop(&mut self);
-    /// Returns the count so far, from any origin, wrapping; a constant where nothing is counted.
-    fn count(&mut self) -> u32;
+    /// Returns the count so far, from any origin, wrapping; a constant where nothing is counted. A
+    /// board that is watched shows the mark first.
+    fn mark(&mut self, mark: Mark) -> u32;
     /// Returns the deepest stack since the boot, bytes; 0 where it is not known.
     fn stack_bytes(&self) -> u32;
+}
+
+/// A point of a request at which the counter is read. The numbers are those of the emulated board's
+/// marks, in `host-sim/cycles/src/steps.rs`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Mark {
+    /// A request is complete.
+    Request,
+    /// The session has decoded it, or has done with the planner.
+    Session,
+    /// The end of [`Stage::Sense`].
+    Sense,
+    /// The end of [`Stage::Topology`].
+    Topology,
+    /// The end of [`Stage::Plan`].
+    Plan,
+    /// The end of [`Stage::Window`].
+    Window,
+    /// The end of [`Stage::Solve`].
+    Solve,
+    /// The end of [`Stage::Drive`].
+    Drive,
+    /// The reply is about to be encoded.
+    Reply,
+    /// The reply is encoded.
+    Replied,
 }
 
 /// A meter that measures nothing.
@@ -32,7 +63,7 @@ impl Meter for NoMeter {
 
     fn stop(&mut self) {}
 
-    fn count(&mut self) -> u32 {
+    fn mark(&mut self, _: Mark) -> u32 {
         0
     }
 
@@ -64,17 +95,11 @@ impl<'m, M: Meter> Stopwatch<'m, M> {
         }
     }
 
-    /// Returns the count since the last mark, and sets a new mark.
-    fn take(&mut self) -> u32 {
-        let now = self.meter.count();
-        let counted = now.wrapping_sub(self.since);
-        self.since = now;
-        counted
-    }
-
     /// Adds everything since the last mark to the stage `session`.
     pub(crate) fn mark_session(&mut self) {
-        let counted = self.take();
+        let now = self.meter.mark(Mark::Session);
+        let counted = now.wrapping_sub(self.since);
+        self.since = now;
         self.stages.session = self.stages.session.wrapping_add(counted);
     }
 
@@ -87,15 +112,17 @@ impl<'m, M: Meter> Stopwatch<'m, M> {
 impl<M: Meter> StageTimer for Stopwatch<'_, M> {
     #[inline(never)]
     fn mark(&mut self, stage: Stage) {
-        let counted = self.take();
-        let total = match stage {
-            Stage::Sense => &mut self.stages.sense,
-            Stage::Topology => &mut self.stages.topology,
-            Stage::Plan => &mut self.stages.plan,
-            Stage::Window => &mut self.stages.window,
-            Stage::Solve => &mut self.stages.solve,
-            Stage::Drive => &mut self.stages.drive,
+        let (mark, total) = match stage {
+            Stage::Sense => (Mark::Sense, &mut self.stages.sense),
+            Stage::Topology => (Mark::Topology, &mut self.stages.topology),
+            Stage::Plan => (Mark::Plan, &mut self.stages.plan),
+            Stage::Window => (Mark::Window, &mut self.stages.window),
+            Stage::Solve => (Mark::Solve, &mut self.stages.solve),
+            Stage::Drive => (Mark::Drive, &mut self.stages.drive),
         };
+        let now = self.meter.mark(mark);
+        let counted = now.wrapping_sub(self.since);
+        self.since = now;
         *total = total.wrapping_add(counted);
     }
 }
@@ -117,17 +144,18 @@ pub(crate) fn sum(stages: &Stages) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Meter, Stopwatch, sum};
+    use super::{Mark, Meter, Stopwatch, sum};
     use fieldline_planner::{Stage, StageTimer};
     use fieldline_protocol::message::Stages;
 
     /// A meter with a given increment for each call. It starts just below the wrap.
-    struct Script(u32, std::vec::IntoIter<u32>);
+    struct Script(u32, std::vec::IntoIter<u32>, std::vec::Vec<Mark>);
 
     impl Meter for Script {
         fn start(&mut self) {}
         fn stop(&mut self) {}
-        fn count(&mut self) -> u32 {
+        fn mark(&mut self, mark: Mark) -> u32 {
+            self.2.push(mark);
             self.0 = self.0.wrapping_add(self.1.next().unwrap_or(0));
             self.0
         }
@@ -138,7 +166,8 @@ mod tests {
 
     #[test]
     fn every_count_belongs_to_one_stage() {
-        let mut script = Script(u32::MAX - 1, std::vec![5, 100, 7, 30, 2].into_iter());
+        let counts = std::vec![5, 100, 7, 30, 2].into_iter();
+        let mut script = Script(u32::MAX - 1, counts, std::vec![]);
         let mut watch = Stopwatch::new(&mut script, u32::MAX - 1, 1000);
         watch.mark_session();
         watch.mark(Stage::Sense);
@@ -153,5 +182,13 @@ mod tests {
         };
         assert_eq!(watch.stages(), stages);
         assert_eq!(sum(&stages), 1144);
+        let marks = [
+            Mark::Session,
+            Mark::Sense,
+            Mark::Drive,
+            Mark::Sense,
+            Mark::Session,
+        ];
+        assert_eq!(script.2, marks);
     }
 }

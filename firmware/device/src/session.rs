@@ -25,7 +25,7 @@ use fieldline_protocol::{SCHEMA, VERSION};
 
 use crate::STALE_MS;
 use crate::log::{info, warning};
-use crate::meter::{self, Meter, Stopwatch};
+use crate::meter::{self, Mark, Meter, Stopwatch};
 use crate::pilot::{Memory, Pilot};
 use crate::signal::Signal;
 
@@ -114,7 +114,7 @@ impl Session {
         let Some(frame) = self.receiver.push(byte) else {
             return;
         };
-        self.request_count = meter.count();
+        self.request_count = meter.mark(Mark::Request);
         let (sequence, is_greeting) = (frame.sequence, frame.kind == Kind::Greeting);
         // By reference: a request is large, and a copy of it would lie under the planner's stack.
         match &frame.request() {
@@ -266,9 +266,9 @@ impl Session {
                 if let Request::Observation(observation) = request {
                     meter.start();
                     let command = self.observe(observation, memory, meter);
-                    let done = meter.count();
+                    let done = meter.mark(Mark::Reply);
                     self.reply_command(sequence, command);
-                    self.reply_cost = meter.count().wrapping_sub(done);
+                    self.reply_cost = meter.mark(Mark::Replied).wrapping_sub(done);
                     meter.stop();
                 } else {
                     self.answer(sequence, request, memory);

@@ -37,12 +37,14 @@ mod values;
 mod worlds;
 
 use std::io::{self, Write as _};
+use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Error, Result};
 use clap::{CommandFactory as _, FromArgMatches as _};
 
 use args::{Cli, Command, ExploreArgs};
+use host_sim::link::cycles::plugin;
 use host_sim::link::image::IMAGE_VARIABLE;
 use host_sim::link::spec::LinkSpec;
 
@@ -114,6 +116,18 @@ fn note_build(link: &LinkSpec) {
     if *link == LinkSpec::Qemu && std::env::var_os(IMAGE_VARIABLE).is_none() {
         note("host-sim: --link qemu: builds the image for the chip, if it is not up to date");
     }
+}
+
+/// Returns the plugin that counts the cycles of an emulated chip. Says why if there is none: the
+/// run goes on without cycles.
+fn cycles(link: &LinkSpec) -> Option<&'static Path> {
+    if *link != LinkSpec::Qemu {
+        return None;
+    }
+    plugin().unwrap_or_else(|error| {
+        note(&format!("host-sim: --link qemu: counts no cycles: {error}"));
+        None
+    })
 }
 
 fn complain(message: &str) -> ExitCode {

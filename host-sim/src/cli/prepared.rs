@@ -25,7 +25,7 @@ use super::args::ExploreArgs;
 use super::mission_file;
 use super::recording::Recorder;
 use super::strategies;
-use super::{note, note_build};
+use super::{cycles, note, note_build};
 
 /// Arguments that fit together, and what they mean.
 pub(super) struct Prepared {
@@ -82,6 +82,7 @@ impl Prepared {
         (keeping, recorder): (Option<&mut Keeping>, Option<&Recorder>),
     ) -> Result<(Report, Record)> {
         let (args, link) = (&self.args, &self.link);
+        note_build(link);
         let options = Options {
             faults: args
                 .fault
@@ -90,8 +91,8 @@ impl Prepared {
             seed: args.common.seed,
             real_time: args.pace.realtime,
             tuning: args.robot.tuning(link)?,
+            cycles: cycles(link),
         };
-        note_build(link);
         let mut planner = strategies::open(&args.strategy, link, &options, mission.relaxation)
             .with_context(|| format!("--link {link}"))?;
         if let LinkSpec::Serial { device, .. } = link {

@@ -28,7 +28,7 @@ use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
 use super::robot::RobotArgs;
 use super::values::{slam_place, start};
-use super::{made_by, note, note_build, say, strategies};
+use super::{cycles, made_by, note, note_build, say, strategies};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct TeamArgs {
@@ -228,6 +228,7 @@ fn open(args: &TeamArgs, links: &[LinkSpec]) -> Result<Vec<Box<dyn Link>>> {
             seed: args.common.seed,
             real_time: args.pace.realtime,
             tuning: args.robot.tuning(link)?,
+            cycles: cycles(link),
             ..Options::default()
         };
         strategies::open(&args.strategy, link, &options, Relaxation::DEFAULT)

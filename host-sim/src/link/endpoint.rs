@@ -15,6 +15,7 @@ use fieldline_protocol::frame::{
 use fieldline_protocol::message::{Control, Counters, Identity, Refusal, Reply, Request};
 use fieldline_protocol::{SCHEMA, VERSION};
 
+use super::cycles::StepCost;
 use super::inside::Inside;
 use super::line::Line;
 use super::{End, Link, LinkError, LinkStats};
@@ -294,5 +295,9 @@ impl<L: Line> End for Endpoint<L> {
 
     fn inside(&self) -> Option<Box<dyn Inside + '_>> {
         self.line.inside()
+    }
+
+    fn cycles(&self) -> Option<StepCost> {
+        self.line.cycles()
     }
 }

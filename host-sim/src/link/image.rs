@@ -1,10 +1,10 @@
 //! The firmware image: the file that the environment names, or else built from the source tree.
 
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use super::LinkError;
+use super::cargo::{self, NotBuilt};
 
 /// Environment variable with the path of an image to use instead of a new build.
 pub const IMAGE_VARIABLE: &str = "FIELDLINE_IMAGE";
@@ -40,37 +40,23 @@ fn existing(path: PathBuf) -> Result<PathBuf, LinkError> {
 /// # Errors
 /// [`LinkError::Io`] naming what is missing and what to type.
 pub fn build(arguments: &[&str]) -> Result<PathBuf, LinkError> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    if !root.join("firmware/stm32f405/Cargo.toml").is_file() {
-        return Err(LinkError::Io(format!(
-            "there is no source tree at {} to build the image from; \
-             set {IMAGE_VARIABLE} to an ELF file",
-            root.display()
-        )));
-    }
-    let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-        .current_dir(&root)
-        .args(["build", "--package", PACKAGE, "--profile", "firmware"])
-        .args([
-            "--target",
-            TARGET,
-            "--message-format",
-            "json-render-diagnostics",
-        ])
-        .args(arguments)
-        .output()
-        .map_err(|error| {
-            LinkError::Io(format!(
+    let mut all = vec!["--profile", "firmware", "--target", TARGET];
+    all.extend(arguments);
+    let messages = cargo::build("firmware/stm32f405", PACKAGE, &all).map_err(|error| {
+        LinkError::Io(match error {
+            NotBuilt::NoSources(root) => format!(
+                "there is no source tree at {} to build the image from; \
+                 set {IMAGE_VARIABLE} to an ELF file",
+                root.display()
+            ),
+            NotBuilt::NoCargo(error) => format!(
                 "cannot run cargo to build the image: {error}; \
                  install Rust, or set {IMAGE_VARIABLE} to an ELF file"
-            ))
-        })?;
-    if !output.status.success() {
-        return Err(LinkError::Io(explain(&String::from_utf8_lossy(
-            &output.stderr,
-        ))));
-    }
-    executable(&String::from_utf8_lossy(&output.stdout)).ok_or_else(|| {
+            ),
+            NotBuilt::Failed(log) => explain(&log),
+        })
+    })?;
+    executable(&messages).ok_or_else(|| {
         LinkError::Io("cargo built the image and did not say where; run `cargo image`".into())
     })
 }
@@ -79,10 +65,7 @@ fn explain(log: &str) -> String {
     if log.contains("can't find crate for `core`") || log.contains("may not be installed") {
         return format!("the image's target is not installed; type: rustup target add {TARGET}");
     }
-    let first = log
-        .lines()
-        .find(|line| line.starts_with("error"))
-        .unwrap_or("no error line");
+    let first = cargo::first_error(log);
     format!("building the image failed: {first}; type `cargo image` to see all of it")
 }
 

@@ -3,6 +3,7 @@
 use core::time::Duration;
 
 use super::LinkError;
+use super::cycles::StepCost;
 use super::inside::Inside;
 
 /// Bytes in both directions. A real line has wall-clock time; a simulated one counts its time and
@@ -25,6 +26,11 @@ pub trait Line {
     fn inside(&self) -> Option<Box<dyn Inside + '_>> {
         None
     }
+    /// Returns what the last step took by the model of the chip's cycles, once, if the far end has
+    /// one. A line that wraps another one passes this on.
+    fn cycles(&self) -> Option<StepCost> {
+        None
+    }
 }
 
 impl<L: Line + ?Sized> Line for &mut L {
@@ -42,5 +48,9 @@ impl<L: Line + ?Sized> Line for &mut L {
 
     fn inside(&self) -> Option<Box<dyn Inside + '_>> {
         (**self).inside()
+    }
+
+    fn cycles(&self) -> Option<StepCost> {
+        (**self).cycles()
     }
 }

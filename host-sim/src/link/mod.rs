@@ -10,7 +10,7 @@
 //! | serial | [`serial`] | frames over a serial port or a pty to any device |
 //!
 //! The last three are an [`endpoint::Endpoint`] over a [`line::Line`]. [`fault`] injects faults
-//! into a line, and [`spec`] opens a link by name.
+//! into a line, and [`spec`] opens a link by name. [`cycles`] has what a model of the chip counts.
 
 use thiserror::Error;
 
@@ -22,9 +22,12 @@ use fieldline_protocol::{SCHEMA, VERSION};
 use serde::{Deserialize, Serialize};
 
 use correction::MapCorrection;
+use cycles::StepCost;
 use inside::Inside;
 
+mod cargo;
 pub mod correction;
+pub mod cycles;
 pub mod digest;
 pub mod direct;
 pub mod endpoint;
@@ -263,6 +266,11 @@ pub trait End {
     fn stats(&self) -> LinkStats;
     /// Looks into the device, if it lives in this process.
     fn inside(&self) -> Option<Box<dyn Inside + '_>> {
+        None
+    }
+    /// Returns what the last observation took on the chip by the model of its cycles; `None` where
+    /// nothing models them, and until the next observation.
+    fn cycles(&self) -> Option<StepCost> {
         None
     }
 }

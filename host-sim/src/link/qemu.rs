@@ -16,12 +16,13 @@ use std::time::Instant;
 use std::os::unix::net::{UnixListener, UnixStream};
 
 use super::LinkError;
+use super::cycles::{StepCost, StepFile};
 use super::endpoint::{Endpoint, RetryPolicy};
 use super::image::image;
 use super::line::Line;
 use super::stream::{POLL, Stream, fresh_nonce};
 
-const PROGRAM: &str = "qemu-system-arm";
+pub(super) const PROGRAM: &str = "qemu-system-arm";
 /// Time for the emulator to start and connect, on a loaded machine.
 const START_LIMIT: Duration = Duration::from_secs(30);
 /// Time for the image's first byte, which comes milliseconds after the first instruction.
@@ -29,7 +30,7 @@ const BOOT_LIMIT: Duration = Duration::from_secs(10);
 
 /// A running emulator; dropping this value ends it.
 #[derive(Debug)]
-struct Emulator(Child);
+pub(super) struct Emulator(Child);
 
 impl Drop for Emulator {
     fn drop(&mut self) {
@@ -40,7 +41,7 @@ impl Drop for Emulator {
 }
 
 impl Emulator {
-    fn start(image: &Path, serial: &str) -> Result<Self, LinkError> {
+    fn start(image: &Path, serial: &str, more: &[String]) -> Result<Self, LinkError> {
         if !image.is_file() {
             let what = format!(
                 "there is no image at {}; type: cargo image",
@@ -48,24 +49,21 @@ impl Emulator {
             );
             return Err(LinkError::Io(what));
         }
+        let kernel = image.to_string_lossy();
+        let fixed = ["-icount", "shift=0,sleep=off", "-kernel", &*kernel];
+        let arguments = fixed.into_iter().chain(more.iter().map(String::as_str));
+        Self::spawn(serial, arguments)
+    }
+
+    /// Starts the emulator with a serial port and more arguments.
+    pub(super) fn spawn<'a>(
+        serial: &str,
+        more: impl IntoIterator<Item = &'a str>,
+    ) -> Result<Self, LinkError> {
         let child = Command::new(PROGRAM)
-            .args([
-                "-M",
-                "netduinoplus2",
-                "-display",
-                "none",
-                "-monitor",
-                "none",
-            ])
-            .args([
-                "-nodefaults",
-                "-icount",
-                "shift=0,sleep=off",
-                "-serial",
-                serial,
-            ])
-            .arg("-kernel")
-            .arg(image)
+            .args(["-M", "netduinoplus2", "-display", "none"])
+            .args(["-monitor", "none", "-nodefaults", "-serial", serial])
+            .args(more)
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -82,7 +80,7 @@ impl Emulator {
     }
 
     /// Fails if the emulator has ended, with the last line of its error output.
-    fn check(&mut self) -> Result<(), LinkError> {
+    pub(super) fn check(&mut self) -> Result<(), LinkError> {
         let ended = self
             .0
             .try_wait()
@@ -120,6 +118,8 @@ pub struct QemuLine {
     emulator: Emulator,
     /// Bytes that the image sent at its boot, until the first receive.
     at_boot: Vec<u8>,
+    /// What the plugin writes of each step, with a plugin.
+    steps: Option<StepFile>,
 }
 
 #[cfg(unix)]
@@ -155,6 +155,10 @@ impl Line for QemuLine {
     fn now(&self) -> Duration {
         self.stream.now()
     }
+
+    fn cycles(&self) -> Option<StepCost> {
+        self.steps.as_ref()?.last()
+    }
 }
 
 /// Starts `image` in the emulator.
@@ -163,12 +167,26 @@ impl Line for QemuLine {
 /// [`LinkError::Io`] naming what is missing and what to type.
 #[cfg(unix)]
 pub fn open_line(image: &Path) -> Result<QemuLine, LinkError> {
-    let path = socket_path();
+    open_watched(image, None)
+}
+
+/// Starts `image` in the emulator, with the plugin that counts cycles
+/// ([`plugin`](super::cycles::plugin)) if one is given.
+///
+/// # Errors
+/// [`LinkError::Io`] naming what is missing and what to type.
+#[cfg(unix)]
+pub fn open_watched(image: &Path, plugin: Option<&Path>) -> Result<QemuLine, LinkError> {
+    let path = temporary("sock");
     let io = |what: &str, error: &std::io::Error| {
         LinkError::Io(format!("{what} {} failed: {error}", path.display()))
     };
     let listener = UnixListener::bind(&path).map_err(|error| io("binding socket", &error))?;
-    let started = Emulator::start(image, &format!("unix:{}", path.display()));
+    let steps = plugin
+        .map(|plugin| StepFile::new(plugin, temporary("steps")))
+        .transpose()?;
+    let more = steps.as_ref().map_or_else(Vec::new, StepFile::arguments);
+    let started = Emulator::start(image, &format!("unix:{}", path.display()), &more);
     let stream = started.and_then(|mut emulator| {
         let stream = accept(&listener, &mut emulator)?;
         Ok((stream, emulator))
@@ -184,17 +202,18 @@ pub fn open_line(image: &Path) -> Result<QemuLine, LinkError> {
         stream: Stream::new(stream, "the emulator"),
         emulator,
         at_boot: Vec::new(),
+        steps,
     };
     line.hear_boot()?;
     Ok(line)
 }
 
-#[cfg(unix)]
-fn socket_path() -> PathBuf {
+/// Returns a path in the folder for temporary files that this process has not used yet.
+pub(super) fn temporary(ending: &str) -> PathBuf {
     use core::sync::atomic::{AtomicU32, Ordering};
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let name = format!("fieldline-{}-{count}.sock", std::process::id());
+    let name = format!("fieldline-{}-{count}.{ending}", std::process::id());
     std::env::temp_dir().join(name)
 }
 
@@ -242,7 +261,7 @@ impl PtyBoard {
     /// # Errors
     /// [`LinkError::Io`] naming what is missing and what to type.
     pub fn start(image: &Path) -> Result<Self, LinkError> {
-        let mut emulator = Emulator::start(image, "pty")?;
+        let mut emulator = Emulator::start(image, "pty", &[])?;
         let silent = || LinkError::Io(format!("{PROGRAM} did not say which pty it opened"));
         let said = emulator.0.stdout.take().ok_or_else(silent)?;
         let mut line = String::new();

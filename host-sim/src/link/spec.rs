@@ -2,6 +2,7 @@
 
 use core::fmt;
 use core::str::FromStr;
+use std::path::Path;
 
 use fieldline_planner::Tuning;
 use fieldline_protocol::BAUD;
@@ -99,6 +100,8 @@ pub struct Options {
     pub real_time: bool,
     /// The planner's tuned constants, for a direct link; the defaults if `None`.
     pub tuning: Option<&'static Tuning>,
+    /// The plugin that counts the cycles of the emulated chip; none are counted without it.
+    pub cycles: Option<&'static Path>,
 }
 
 impl LinkSpec {
@@ -126,7 +129,7 @@ impl LinkSpec {
             Self::Loopback => Ok(end(LocalDevice::new(), RetryPolicy::VIRTUAL, 1, options)),
             #[cfg(unix)]
             Self::Qemu => {
-                let line = qemu::open_line(&image()?)?;
+                let line = qemu::open_watched(&image()?, options.cycles)?;
                 let policy = policy(RetryPolicy::LOCKSTEP);
                 Ok(end(line, policy, fresh_nonce(), options))
             }

@@ -13,11 +13,21 @@ pub struct Planner {
     pub instructions: Option<Percentiles>,
     /// Instructions of each stage. The maxima of two stages may come from different steps.
     pub stage_instructions: Option<Stages>,
+    /// Cycles of a step on the chip, by the model; `null` if nothing models them.
+    #[serde(default)]
+    pub cycles: Option<Percentiles>,
+    /// The same in milliseconds at the clock of the chip.
+    #[serde(default)]
+    pub ms: Option<Percentiles>,
+    /// Cycles of each stage, by the model.
+    #[serde(default)]
+    pub stage_cycles: Option<Stages>,
     /// Deepest stack of the device; `null` if it does not measure it.
     pub stack_bytes: Option<u32>,
 }
 
-/// Instructions of a step's stages.
+/// Instructions or cycles of a step's stages. The maxima of two stages may come from different
+/// steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stages {
     /// Decodes the request; encodes the reply to the request before it.
@@ -37,6 +47,25 @@ pub struct Stages {
 }
 
 impl Stages {
+    /// Returns the percentiles of each stage over the steps, of which `parts` returns the stages;
+    /// `None` without steps.
+    #[must_use]
+    pub fn over<T>(steps: &[T], parts: fn(&T) -> [u32; 7]) -> Option<Self> {
+        let stage = |i: usize| {
+            let of: Vec<f64> = steps.iter().map(|step| f64::from(parts(step)[i])).collect();
+            Percentiles::of(&of)
+        };
+        Some(Self {
+            session: stage(0)?,
+            sense: stage(1)?,
+            topology: stage(2)?,
+            plan: stage(3)?,
+            window: stage(4)?,
+            solve: stage(5)?,
+            drive: stage(6)?,
+        })
+    }
+
     /// Returns the stages with their names, in the order of a step.
     #[must_use]
     pub const fn by_name(&self) -> [(&'static str, Percentiles); 7] {

@@ -1,5 +1,7 @@
 //! The report as a few lines of text.
 
+use fieldline_cycles::{CLOCK_HZ, milliseconds};
+
 use super::{GivenUp, LoopClosing, Loops, Report};
 
 /// Least share of the ground that an explored run has truly seen.
@@ -58,6 +60,7 @@ impl Report {
             ),
             format!("  planner   {}", self.cost()),
         ];
+        lines.extend(self.chip());
         lines.extend(self.way());
         lines.extend(self.surroundings());
         if self.is_falsely_explored() {
@@ -194,6 +197,30 @@ impl Report {
         }
     }
 
+    /// Returns two lines on what a step takes on the chip by the model, if it was counted.
+    fn chip(&self) -> Vec<String> {
+        let Some((cycles, ms)) = self.planner.cycles.zip(self.planner.ms) else {
+            return Vec::new();
+        };
+        let stages = self.planner.stage_cycles.unwrap_or_default().by_name();
+        let stages = stages.map(|(name, of)| {
+            let [p50, most] = [of.p50, of.max].map(milliseconds);
+            format!("{name} {p50:.1} ({most:.1})")
+        });
+        vec![
+            format!(
+                "  chip      {:.1} ms a step by the model (p99 {:.1}, max {:.1}): {:.2} M cycles \
+                 at {} MHz",
+                ms.p50,
+                ms.p99,
+                ms.max,
+                cycles.p50 / 1e6,
+                CLOCK_HZ / 1_000_000,
+            ),
+            format!("  by stage  {} ms", stages.join(", ")),
+        ]
+    }
+
     fn cost(&self) -> String {
         let mut words = format!("{} steps", self.steps);
         if let Some(us) = self.planner.round_trip_us {
@@ -245,7 +272,7 @@ fn minutes(seconds: f64) -> String {
 #[cfg(test)]
 mod tests {
     use crate::report::tests::sample;
-    use crate::report::{GivenUp, LoopClosing, MapErrors, TrueGround};
+    use crate::report::{GivenUp, LoopClosing, MapErrors, Percentiles, Stages, TrueGround};
 
     #[test]
     fn the_summary_has_all_parts_in_order() {
@@ -336,6 +363,26 @@ mod tests {
         report.map = with_share(Some(0.034));
         let line = "  walls     only 3 % of the true walls are in the map; ";
         assert!(report.to_text().lines().any(|it| it.starts_with(line)));
+    }
+
+    #[test]
+    fn milliseconds_are_said_to_be_by_the_model() {
+        let mut report = sample();
+        assert!(!report.to_text().contains("model"));
+        let of = |p50, max| Percentiles { p50, p99: max, max };
+        report.planner.cycles = Some(of(3.36e6, 6.72e6));
+        report.planner.ms = Some(of(20.0, 40.0));
+        report.planner.stage_cycles = Some(Stages {
+            solve: of(1.68e6, 3.36e6),
+            ..Stages::default()
+        });
+        let text = report.to_text();
+        let lines = "
+  chip      20.0 ms a step by the model (p99 40.0, max 40.0): 3.36 M cycles at 168 MHz
+  by stage  session 0.0 (0.0), sense 0.0 (0.0), topology 0.0 (0.0), plan 0.0 (0.0), \
+                     window 0.0 (0.0), solve 10.0 (20.0), drive 0.0 (0.0) ms
+";
+        assert!(text.contains(lines), "{text}");
     }
 
     #[test]

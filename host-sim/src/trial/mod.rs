@@ -233,6 +233,7 @@ fn step(
     };
     let coverage = cast.survey.note(&observation, &truth, &noted);
     let mut step = Step::new(&observation, truth, command, round_trip_us);
+    step.cycles = cast.link.end().cycles();
     let is_held = stands || command.status == Status::Paused;
     if is_held && let Some(mirror) = cast.survey.mirror() {
         step.carry(mirror.carried(&observation));

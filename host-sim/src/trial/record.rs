@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use fieldline_cycles::milliseconds;
 use fieldline_protocol::message::{
     Command, Cost, Observation, Pose, Quality, ResidualFrontier, Tile,
 };
@@ -12,12 +13,13 @@ use super::planned_path::PlannedPath;
 use super::relief::Relief;
 use super::snapshot::{Snapshot, Window};
 use super::{Ending, Progress, wording};
+use crate::link::cycles::StepCost;
 use crate::link::digest::Digest;
 use crate::link::{LinkError, LinkStats};
 use crate::metrics::GroundTruth;
 use crate::report::loop_closing::{LoopClosing, LoopStatus};
 use crate::report::tum::Stamped;
-use crate::report::{self, GridMap, Percentiles};
+use crate::report::{self, GridMap, Percentiles, Stages};
 
 /// One step.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +32,8 @@ pub struct Step {
     pub command: Command,
     /// Microseconds from observation to command.
     pub round_trip_us: f64,
+    /// What the step took on the chip by the model of its cycles, where there is one.
+    pub cycles: Option<StepCost>,
 }
 
 /// The record of a run.
@@ -133,6 +137,7 @@ impl Step {
             truth,
             command,
             round_trip_us,
+            cycles: None,
         }
     }
 }
@@ -266,23 +271,29 @@ impl Record {
         let round_trips: Vec<f64> = live.map(|step| step.round_trip_us).collect();
         let costs = self.steps.iter().map(|step| step.command.cost);
         let counted: Vec<Cost> = costs.clone().filter(|cost| cost.instructions > 0).collect();
-        let of = |part: fn(&Cost) -> u32| {
-            let parts: Vec<f64> = counted.iter().map(|cost| f64::from(part(cost))).collect();
-            Percentiles::of(&parts)
+        let instructions: Vec<f64> = counted.iter().map(|it| it.instructions.into()).collect();
+        let by_stage = |cost: &Cost| {
+            let it = cost.stages;
+            [
+                it.session,
+                it.sense,
+                it.topology,
+                it.plan,
+                it.window,
+                it.solve,
+                it.drive,
+            ]
         };
-        let all = |part| of(part).unwrap_or_default();
+        let modelled: Vec<StepCost> = self.steps.iter().filter_map(|step| step.cycles).collect();
+        let cycles: Vec<f64> = modelled.iter().map(|cost| cost.cycles() as f64).collect();
+        let ms: Vec<f64> = cycles.iter().map(|&it| milliseconds(it)).collect();
         report::Planner {
             round_trip_us: Percentiles::of(&round_trips),
-            instructions: of(|cost| cost.instructions),
-            stage_instructions: (!counted.is_empty()).then(|| report::Stages {
-                session: all(|cost| cost.stages.session),
-                sense: all(|cost| cost.stages.sense),
-                topology: all(|cost| cost.stages.topology),
-                plan: all(|cost| cost.stages.plan),
-                window: all(|cost| cost.stages.window),
-                solve: all(|cost| cost.stages.solve),
-                drive: all(|cost| cost.stages.drive),
-            }),
+            instructions: Percentiles::of(&instructions),
+            stage_instructions: Stages::over(&counted, by_stage),
+            cycles: Percentiles::of(&cycles),
+            ms: Percentiles::of(&ms),
+            stage_cycles: Stages::over(&modelled, |cost| cost.stages.map(|stage| stage.cycles)),
             stack_bytes: costs
                 .map(|cost| cost.stack_bytes)
                 .max()

@@ -8,7 +8,9 @@ use fixed::types::{I4F12, I16F16};
 
 use super::itinerary::Orders;
 use super::{Body, Cast, Ending, Flow, Progress, Record, Setup, Survey, Watch, run};
+use crate::link::cycles::StepCost;
 use crate::link::{End, Link, LinkError, LinkStats};
+use crate::report::Percentiles;
 use crate::report::tum::Stamped;
 use crate::sim::Loss;
 
@@ -358,6 +360,24 @@ fn the_digest_is_of_the_commands_alone() {
 }
 
 #[test]
+fn cycles_are_reported_of_the_steps_that_have_them() {
+    let exploring = || command(Status::Exploring, 0.1);
+    let last = command(Status::Finished(Finish::Explored), 0.0);
+    let (mut record, ..) = ends(vec![exploring(), exploring(), last]);
+    for (step, cycles) in record.steps.iter_mut().zip([1_680_000, 3_360_000]) {
+        let mut cost = StepCost::default();
+        cost.stages[1].cycles = cycles;
+        step.cycles = Some(cost);
+    }
+    let planner = record.planner();
+    let of = |it: Option<Percentiles>| it.map(|it| (it.p50, it.max));
+    assert_eq!(of(planner.cycles), Some((1.68e6, 3.36e6)));
+    assert_eq!(of(planner.ms), Some((10.0, 20.0)));
+    let stages = planner.stage_cycles.unwrap();
+    assert_eq!((stages.sense.max, stages.solve.max), (3.36e6, 0.0));
+}
+
+#[test]
 fn costs_are_reported_only_where_the_device_measures() {
     let mut measured = command(Status::Finished(Finish::Explored), 0.0).unwrap();
     measured.cost.instructions = 4_000_000;
@@ -375,5 +395,7 @@ fn costs_are_reported_only_where_the_device_measures() {
     let (record, ..) = ends(vec![command(Status::Finished(Finish::Explored), 0.0)]);
     assert_eq!(record.planner().instructions, None);
     assert_eq!(record.planner().stage_instructions, None);
+    assert_eq!(record.planner().cycles, None);
+    assert_eq!(record.planner().stage_cycles, None);
     assert_eq!(record.planner().stack_bytes, None);
 }

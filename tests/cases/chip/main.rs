@@ -3,10 +3,12 @@
 //! Every case is ignored by default: it needs the Rust target of the chip, most cases need QEMU as
 //! well. `tests/run` installs both and runs them.
 
+mod decoder;
 mod flat;
 mod full;
 mod loops;
 mod matrix;
+mod milliseconds;
 mod sessions;
 mod size;
 mod space;

@@ -14,7 +14,7 @@ use fieldline_protocol::message::{Control, Reply, Request, Status};
 use fieldline_protocol::{SCHEMA, VERSION};
 
 use super::{Board, Port, PortError, Turn};
-use crate::meter::{Meter, NoMeter};
+use crate::meter::{Mark, Meter, NoMeter};
 use crate::pilot::tests::Bench;
 use crate::session::{Boot, Session};
 
@@ -78,8 +78,8 @@ impl Meter for Bare {
     fn stop(&mut self) {
         NoMeter.stop();
     }
-    fn count(&mut self) -> u32 {
-        NoMeter.count()
+    fn mark(&mut self, mark: Mark) -> u32 {
+        NoMeter.mark(mark)
     }
     fn stack_bytes(&self) -> u32 {
         NoMeter.stack_bytes()

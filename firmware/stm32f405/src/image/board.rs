@@ -6,6 +6,7 @@
 //! | PB0 | emergency stop: a normally closed contact to ground; pulled up, high is pressed |
 //! | PC12 | status LED, lit when low (as on the Olimex STM32-H405) |
 //! | TIM2 | runs freely: instructions in QEMU, half-cycles (84 MHz) on silicon |
+//! | ITM | marks of a step's stages, in QEMU only, where a plugin sees them |
 //! | `SysTick` | milliseconds, on silicon only: in QEMU time stands still while the host computes |
 //! | IWDG | one second, on silicon only: QEMU has none |
 //!
@@ -16,11 +17,11 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use cortex_m::peripheral::scb::Exception;
 use cortex_m::peripheral::syst::SystClkSource;
-use cortex_m::peripheral::{NVIC, SCB};
+use cortex_m::peripheral::{ITM, NVIC, SCB};
 use cortex_m_rt::exception;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
-use fieldline_device::Meter;
 use fieldline_device::port;
+use fieldline_device::{Mark, Meter};
 use stm32f4::stm32f405::{FLASH, GPIOB, GPIOC, IWDG, Interrupt, Peripherals, RCC, TIM2};
 
 use super::uart::Uart;
@@ -41,6 +42,7 @@ static MILLISECONDS: AtomicU32 = AtomicU32::new(0);
 /// The peripherals that the main loop uses.
 pub(crate) struct Board {
     timer: TIM2,
+    trace: ITM,
     watchdog: Option<IWDG>,
     emulated: bool,
     by_watchdog: bool,
@@ -104,6 +106,7 @@ impl Board {
         }
         let board = Self {
             timer: chip.TIM2,
+            trace: core.ITM,
             watchdog,
             emulated,
             by_watchdog,
@@ -224,7 +227,11 @@ impl Meter for Board {
         }
     }
 
-    fn count(&mut self) -> u32 {
+    fn mark(&mut self, mark: Mark) -> u32 {
+        if self.emulated {
+            // The emulator ignores the store; a plugin sees its address and counts cycles by stage.
+            self.trace.stim[mark as usize].write_u8(0);
+        }
         self.timer.cnt().read().bits()
     }
 

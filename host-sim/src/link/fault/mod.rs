@@ -23,6 +23,7 @@ use fieldline_protocol::frame::{MAX_REQUEST_FRAME, Receiver, Side, encode_reques
 use fieldline_protocol::message::{Control, Request};
 
 use super::LinkError;
+use super::cycles::StepCost;
 use super::inside::Inside;
 use super::line::Line;
 pub use spec::Faults;
@@ -279,5 +280,9 @@ impl<L: Line> Line for Faulty<L> {
 
     fn inside(&self) -> Option<Box<dyn Inside + '_>> {
         self.line.inside()
+    }
+
+    fn cycles(&self) -> Option<StepCost> {
+        self.line.cycles()
     }
 }

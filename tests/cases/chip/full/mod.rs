@@ -1,6 +1,6 @@
 //! Cases that take hours: `tests/run --full` runs them.
 
-use fieldline_tests::emulator::image;
+use fieldline_tests::emulator::{chip, image};
 use fieldline_tests::runs::in_parallel;
 use fieldline_tests::{costs, worlds};
 
@@ -13,7 +13,7 @@ mod iteration;
 fn every_flat_world_is_within_the_chips_budget() {
     let image = image();
     let worlds = worlds::builtins(&worlds::EXPLORABLE);
-    let reports = in_parallel(&worlds, |world| flat::on_both(world, &image));
+    let reports = in_parallel(&worlds, |world| flat::on_both(world, &mut chip(&image)));
     costs::check("costs-full.txt", &reports);
 }
 
@@ -22,7 +22,7 @@ fn every_flat_world_is_within_the_chips_budget() {
 fn every_uneven_world_is_within_the_chips_budget() {
     let image = image();
     let worlds = worlds::builtins(&worlds::UNEVEN);
-    let reports = in_parallel(&worlds, |world| uneven::on_both(world, &image));
+    let reports = in_parallel(&worlds, |world| uneven::on_both(world, &mut chip(&image)));
     costs::check("costs-terrain.txt", &reports);
 }
 
@@ -35,14 +35,14 @@ fn two_thousand_hostile_sessions() {
 
 /// Worlds drawn by others.
 mod data {
-    use super::{costs, flat, image, in_parallel, worlds};
+    use super::{chip, costs, flat, image, in_parallel, worlds};
 
     #[test]
     #[ignore = "needs worlds drawn by others (FIELDLINE_DATA), the image and QEMU; takes hours"]
     fn every_flat_world_is_within_the_chips_budget() {
         let image = image();
         let worlds = worlds::drawn_by_others();
-        let reports = in_parallel(&worlds, |world| flat::on_both(world, &image));
+        let reports = in_parallel(&worlds, |world| flat::on_both(world, &mut chip(&image)));
         costs::check("costs-data.txt", &reports);
     }
 }

@@ -9,7 +9,7 @@ use fieldline_protocol::frame::{
 use fieldline_protocol::message::{Command, Control, Refusal, Reply, Request, Status};
 use fieldline_protocol::{SCHEMA, VERSION};
 
-use crate::meter::Meter;
+use crate::meter::{Mark, Meter};
 use crate::pilot::tests::{Bench, observation, start};
 use crate::session::{Boot, Session};
 
@@ -22,7 +22,7 @@ impl Meter for Steps {
         self.0 += 1;
     }
     fn stop(&mut self) {}
-    fn count(&mut self) -> u32 {
+    fn mark(&mut self, _: Mark) -> u32 {
         self.1 += 1000;
         self.1
     }

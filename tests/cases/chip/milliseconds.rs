@@ -1,0 +1,81 @@
+//! Milliseconds of a step on the chip by the model of its cycles: `golden/milliseconds.txt`.
+//!
+//! The runs are those of `flat` and of one world of `uneven`, with the plugin that counts cycles.
+//! Each is compared there with the same run by call, so the plugin changes no command.
+
+use fieldline_tests::emulator::{chip, image, watched_chip};
+use fieldline_tests::milliseconds;
+use fieldline_tests::runs::explored;
+use fieldline_tests::watched::Watched;
+use fieldline_tests::worlds;
+use host_sim::link::Link;
+use host_sim::trial::mission::Mission;
+
+use crate::{flat, uneven};
+
+/// Instructions between a mark that the plugin sees and the read of the chip's own counter.
+const BETWEEN: u32 = 40;
+
+/// A few steps.
+fn short() -> Mission {
+    Mission {
+        link: "qemu".into(),
+        time_limit_ms: 4_000,
+        ..Mission::default()
+    }
+}
+
+#[test]
+#[ignore = "needs the image and QEMU; tests/run runs it"]
+fn a_step_takes_milliseconds_by_the_model() {
+    let mut reports = flat::RUNS.clone();
+    reports.push(uneven::COUNTED.clone());
+    milliseconds::check("milliseconds.txt", &reports);
+}
+
+#[test]
+#[ignore = "needs the image and QEMU; tests/run runs it"]
+fn the_plugin_counts_the_instructions_that_the_chip_counts() {
+    let mut steps = 0;
+    let mut link = Watched::new(watched_chip(&image()), |link, _, command| {
+        let stages = command.cost.stages;
+        let counted = [
+            stages.session,
+            stages.sense,
+            stages.topology,
+            stages.plan,
+            stages.window,
+            stages.solve,
+            stages.drive,
+        ];
+        let modelled = link.end().cycles().expect("the step was counted");
+        assert_eq!(link.end().cycles(), None, "a step is read once");
+        for (stage, counted) in modelled.stages.into_iter().zip(counted) {
+            let is_same = stage.instructions.abs_diff(counted) <= BETWEEN;
+            assert!(is_same, "{stage:?}, counted {counted}: {modelled:?}");
+            // An instruction takes a cycle or more, but for those that fold into others.
+            let least = stage.instructions - stage.instructions / 10;
+            let is_plausible = (least..=4 * stage.instructions + 400).contains(&stage.cycles);
+            assert!(is_plausible, "{stage:?}: {modelled:?}");
+        }
+        link.tile(0, 0)?;
+        assert_eq!(link.end().cycles(), None, "a request for a tile is no step");
+        steps += 1;
+        Ok(())
+    });
+    let (report, _) = explored(&short(), &worlds::builtin("cluttered"), &mut link);
+    drop(link);
+    assert!(steps > 10, "{steps}");
+    // The steps were read here, so the run had none.
+    assert_eq!(report.planner.cycles, None);
+}
+
+#[test]
+#[ignore = "needs the image and QEMU; tests/run runs it"]
+fn without_the_plugin_no_cycles_are_counted() {
+    let mut link = chip(&image());
+    let (report, _) = explored(&short(), &worlds::builtin("cluttered"), &mut link);
+    assert!(report.planner.instructions.is_some());
+    assert_eq!(report.planner.ms, None);
+    assert_eq!(report.planner.stage_cycles, None);
+}
