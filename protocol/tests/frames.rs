@@ -15,11 +15,12 @@ use fieldline_protocol::message::{
     self, BUILD_BYTES, Budget, CORRECTED_BYTES, CORRECTED_TILES, CRASH_FILE_BYTES, Cause, Control,
     CorrectedTile, CorrectedTiles, Counters, Crash, FENCE_CORNERS, FENCE_POLYGONS,
     FIELD_CELL_BYTES, FIELD_SIDE, Fence, FencePolygon, FieldRow, Hull, Identity, Laser, LoopLimits,
-    MAX_FRONTIERS, MAX_SCANS, Member, NO_RETURN_MM, Order, PATH_PAGE, Path, Preference, Reply,
-    Request, ResidualFrontier, ResidualReason, Start, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS,
-    Team, Tile, UnevenGround,
+    MAX_FRONTIERS, MAX_SCANS, Member, Motion, NO_RETURN_MM, Order, PATH_PAGE, Path, Preference,
+    RECALLED_POINTS, RECALLED_TRACK, Recall, RecalledPoint, Reply, Request, ResidualFrontier,
+    ResidualReason, Start, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS, Team, Tile, UnevenGround,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
+use fixed::types::I16F16;
 use proptest::prelude::*;
 
 proptest! {
@@ -86,7 +87,7 @@ fn the_largest_messages_fit_and_fill_their_frames() {
     assert_eq!(reply_frame(u16::MAX, &tile).len(), MAX_REPLY_FRAME);
 
     let far = fixed::types::I4F12::MIN;
-    let farthest = fixed::types::I16F16::MIN;
+    let farthest = I16F16::MIN;
     let laser = Laser {
         x: far,
         y: far,
@@ -220,7 +221,25 @@ fn the_largest_messages_fit_and_fill_their_frames() {
         y: i16::MIN,
         shift: (i8::MIN, i8::MIN),
         bytes: u16::MAX,
+        trail: true,
     };
+    let recall = Request::Recall(Recall {
+        epoch: u16::MAX,
+        origin: (I16F16::MIN, I16F16::MIN),
+        points: [RecalledPoint {
+            x_mm: i16::MIN,
+            y_mm: i16::MIN,
+            returns: u8::MAX,
+        }; RECALLED_POINTS]
+            .into_iter()
+            .collect(),
+        track_end: Some(Motion {
+            x: I16F16::MIN,
+            y: I16F16::MIN,
+            yaw: I16F16::MIN,
+        }),
+        track: [[i8::MIN; 3]; RECALLED_TRACK].into_iter().collect(),
+    });
     let part = Request::Tiles(CorrectedTiles {
         epoch: u16::MAX,
         first: u16::MAX,
@@ -230,6 +249,7 @@ fn the_largest_messages_fit_and_fill_their_frames() {
     });
     assert!(request_frame(1, &start).len() <= MAX_REQUEST_FRAME);
     assert!(request_frame(1, &part).len() <= MAX_REQUEST_FRAME);
+    assert!(request_frame(1, &recall).len() <= MAX_REQUEST_FRAME);
     for reply in others {
         assert!(reply_frame(1, &reply).len() <= MAX_REPLY_FRAME);
     }

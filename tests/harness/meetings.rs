@@ -21,7 +21,7 @@ use fieldline_device::{Memory, Pilot, SLOTS, State, TILES, convert};
 use fieldline_planner::{Config, Goal, GoalLevel, Order, Tuning, Workspace, step};
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
-    Packet, Path, Refusal, ResidualFrontier, Status, Tile, Twist,
+    Packet, Path, Recall, Refusal, ResidualFrontier, Status, Tile, Twist,
 };
 use host_sim::link::inside::Inside;
 use host_sim::link::{Link, LinkError, LinkStats};
@@ -302,6 +302,10 @@ impl Link for Ordered {
     }
 
     fn send_tiles(&mut self, _: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
+        Err(LinkError::Refused("nobody corrects this map".into()))
+    }
+
+    fn recall(&mut self, _: &Recall) -> Result<(), LinkError> {
         Err(LinkError::Refused("nobody corrects this map".into()))
     }
 

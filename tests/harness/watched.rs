@@ -3,7 +3,7 @@
 
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
-    Packet, Path, ResidualFrontier, Status, Tile,
+    Packet, Path, Recall, ResidualFrontier, Status, Tile,
 };
 use host_sim::link::inside::Inside;
 use host_sim::link::{Link, LinkError, LinkStats};
@@ -75,6 +75,10 @@ where
         self.link.send_tiles(part)
     }
 
+    fn recall(&mut self, recall: &Recall) -> Result<(), LinkError> {
+        self.link.recall(recall)
+    }
+
     fn inside(&self) -> Option<Box<dyn Inside + '_>> {
         self.link.inside()
     }
@@ -140,6 +144,10 @@ mod tests {
 
         fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
             Err(LinkError::Refused(format!("tile {}", part.first)))
+        }
+
+        fn recall(&mut self, recall: &Recall) -> Result<(), LinkError> {
+            Err(LinkError::Refused(format!("recall {}", recall.epoch)))
         }
 
         fn inside(&self) -> Option<Box<dyn Inside + '_>> {

@@ -29,8 +29,8 @@ use fieldline_planner::roadmap::configuration_space::Footprint;
 use fieldline_planner::status::ResidualReason;
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, Cost, Fault, FieldRow, Finish,
-    Identity, MAX_FRONTIERS, Observation, Packet, Path, Refusal, ResidualFrontier, Start, Status,
-    TILE_SKELETON_BYTES, TILE_STAMPS, Tile,
+    Identity, MAX_FRONTIERS, Observation, Packet, Path, Recall, Refusal, ResidualFrontier, Start,
+    Status, TILE_SKELETON_BYTES, TILE_STAMPS, Tile,
 };
 
 use super::chart::Chart;
@@ -391,6 +391,10 @@ impl<S: Strategy> Link for Session<S> {
     }
 
     fn send_tiles(&mut self, _: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
+        Err(LinkError::Refused("a baseline corrects no map".into()))
+    }
+
+    fn recall(&mut self, _: &Recall) -> Result<(), LinkError> {
         Err(LinkError::Refused("a baseline corrects no map".into()))
     }
 

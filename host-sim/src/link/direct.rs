@@ -5,7 +5,7 @@ use fieldline_device::{Memory, Pilot, SLOTS, State, TILES};
 use fieldline_planner::{Tuning, Workspace};
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
-    Packet, Path, Refusal, ResidualFrontier, Status, Tile,
+    Packet, Path, Recall, Refusal, ResidualFrontier, Status, Tile,
 };
 
 use super::inside::{Inside, Look};
@@ -120,6 +120,12 @@ impl Link for Direct {
 
     fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
         self.with(|pilot, memory| pilot.tiles(memory, part))
+            .map_err(refused)
+    }
+
+    fn recall(&mut self, recall: &Recall) -> Result<(), LinkError> {
+        self.with(|pilot, memory| pilot.recall(memory, recall))
+            .map(drop)
             .map_err(refused)
     }
 

@@ -14,7 +14,7 @@ use fieldline_protocol::frame::{
 };
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, Counters, FieldRow, Identity,
-    Observation, Packet, Path, Refusal, Reply, Request, ResidualFrontier, Status, Tile,
+    Observation, Packet, Path, Recall, Refusal, Reply, Request, ResidualFrontier, Status, Tile,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 
@@ -337,6 +337,13 @@ impl<L: Line> Link for Endpoint<L> {
         match self.call(&Request::Tiles(part.clone()))? {
             Reply::Corrected(progress) => Ok(progress),
             _ => Err(unexpected("a part of a correction")),
+        }
+    }
+
+    fn recall(&mut self, recall: &Recall) -> Result<(), LinkError> {
+        match self.call(&Request::Recall(recall.clone()))? {
+            Reply::Corrected(_) => Ok(()),
+            _ => Err(unexpected("a recall")),
         }
     }
 

@@ -16,7 +16,7 @@ use thiserror::Error;
 
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
-    Packet, Path, ResidualFrontier, Status, Tile,
+    Packet, Path, Recall, ResidualFrontier, Status, Tile,
 };
 use serde::{Deserialize, Serialize};
 
@@ -156,6 +156,12 @@ pub trait Link {
     /// # Errors
     /// As [`Link::open_correction`].
     fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError>;
+    /// Tells a device that was reset what lies around its robot, after its map and before its first
+    /// step.
+    ///
+    /// # Errors
+    /// As [`Link::open_correction`].
+    fn recall(&mut self, recall: &Recall) -> Result<(), LinkError>;
     /// Corrects the map. The robot stands until this returns.
     ///
     /// # Errors

@@ -31,7 +31,7 @@ use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Member,
-    Observation, Packet, Path, ResidualFrontier, Status, Team, Tile,
+    Observation, Packet, Path, Recall, ResidualFrontier, Status, Team, Tile,
 };
 use fieldline_protocol::packet::decode_packet;
 use serde::{Deserialize, Serialize};
@@ -283,6 +283,10 @@ impl Link for Networked {
 
     fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
         self.link.send_tiles(part)
+    }
+
+    fn recall(&mut self, recall: &Recall) -> Result<(), LinkError> {
+        self.link.recall(recall)
     }
 
     fn inside(&self) -> Option<Box<dyn Inside + '_>> {

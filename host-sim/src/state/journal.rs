@@ -16,7 +16,7 @@ use std::rc::Rc;
 
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
-    Packet, Path, ResidualFrontier, Status, Tile,
+    Packet, Path, Recall, ResidualFrontier, Status, Tile,
 };
 use serde::{Deserialize, Serialize};
 
@@ -31,7 +31,7 @@ pub enum Answer {
     Command(Command),
     /// To a control.
     Status(Status),
-    /// To a correction of the map.
+    /// To a correction of the map, or to a recall.
     Done,
     /// A request was refused for this reason.
     Refused(String),
@@ -217,6 +217,14 @@ impl Link for Recorder<'_> {
 
     fn send_tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
         self.link.send_tiles(part)
+    }
+
+    fn recall(&mut self, recall: &Recall) -> Result<(), LinkError> {
+        self.answer(
+            |link| link.recall(recall),
+            |()| Answer::Done,
+            |answer| (answer == Answer::Done).then_some(()),
+        )
     }
 
     fn correct(&mut self, correction: &MapCorrection) -> Result<(), LinkError> {

@@ -2,8 +2,8 @@
 
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, Fault, FieldRow, Finish,
-    Identity, Location, Observation, Packet, Path, Quality, ResidualFrontier, ResidualReason,
-    Start, Status, Tile, Twist,
+    Identity, Location, Observation, Packet, Path, Quality, Recall, ResidualFrontier,
+    ResidualReason, Start, Status, Tile, Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -121,6 +121,10 @@ impl Link for Script {
     }
 
     fn send_tiles(&mut self, _: &CorrectedTiles) -> Result<CorrectionProgress, LinkError> {
+        Err(LinkError::Refused("a script has no map".into()))
+    }
+
+    fn recall(&mut self, _: &Recall) -> Result<(), LinkError> {
         Err(LinkError::Refused("a script has no map".into()))
     }
 
