@@ -17,8 +17,8 @@ use serde::{Deserialize, Serialize};
 use crate::check::{CHECK_BYTES, Kind, RunningChecksum};
 use crate::cobs::{self, Stuffer};
 use crate::message::{
-    CORRECTED_BYTES, CORRECTED_TILES, FIELD_SIDE, MAX_BEAMS, MAX_SCANS, PATH_PAGE, Reply, Request,
-    TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS,
+    CORRECTED_BYTES, CORRECTED_TILES, FIELD_SIDE, MAX_BEAMS, MAX_SCANS, PATH_PAGE, RECALLED_POINTS,
+    RECALLED_TRACK, Reply, Request, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS,
 };
 use crate::packet::MAX_PACKET;
 use crate::schema::{SCHEMA, VERSION};
@@ -39,8 +39,12 @@ const MAX_REPLY_BODY: usize =
 const _: () = assert!(MAX_REPLY_BODY > 12 + 4 * FIELD_SIDE && MAX_REPLY_BODY > MAX_LOG_BYTES);
 // A packet: as in the air, with a variant's number and a tag, without the check.
 const _: () = assert!(MAX_REPLY_BODY > 2 + MAX_PACKET && MAX_REQUEST_BODY > 1 + MAX_PACKET);
-// A part of a correction: epoch, first, last, tiles of ten bytes at most, cells.
-const _: () = assert!(MAX_REQUEST_BODY > 1 + 7 + 1 + 11 * CORRECTED_TILES + 2 + CORRECTED_BYTES);
+// A part of a correction: epoch, first, last, tiles of twelve bytes at most, cells and trails.
+const _: () = assert!(MAX_REQUEST_BODY > 1 + 7 + 1 + 12 * CORRECTED_TILES + 2 + CORRECTED_BYTES);
+// A recall: epoch, origin, points of seven bytes at most, the track's end, differences.
+const RECALL_BODY: usize =
+    3 + 2 * 5 + 2 + 7 * RECALLED_POINTS + (1 + 3 * 5) + 1 + 3 * RECALLED_TRACK;
+const _: () = assert!(MAX_REQUEST_BODY > 1 + RECALL_BODY);
 // A page of the path: tractor point, shield, length, and cells of two varints.
 const _: () = assert!(MAX_REPLY_BODY > 1 + 7 + 13 + 2 + 6 * PATH_PAGE);
 

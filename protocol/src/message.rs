@@ -16,6 +16,7 @@
 //! | [`Request::Say`] | host | [`Reply::Say`] or [`Reply::Refused`] |
 //! | [`Request::Correct`] | host | [`Reply::Corrected`] or [`Reply::Refused`] |
 //! | [`Request::Tiles`] | host | [`Reply::Corrected`] or [`Reply::Refused`] |
+//! | [`Request::Recall`] | host | [`Reply::Corrected`] or [`Reply::Refused`] |
 //!
 //! The device sends two messages without a request: [`Reply::Hello`] after it booted, and
 //! [`Reply::Crash`] before it reboots.
@@ -40,7 +41,7 @@ pub use command::{
 };
 pub use correction::{
     CORRECTED_BYTES, CORRECTED_TILES, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress,
-    MOST_CORRECTED, Motion,
+    MOST_CORRECTED, Motion, RECALLED_POINTS, RECALLED_TRACK, Recall, RecalledPoint, TRAIL_BYTES,
 };
 pub use doing::{Doing, Event, Events};
 pub use identity::{BUILD_BYTES, CRASH_FILE_BYTES, Cause, Crash, Identity};
@@ -119,6 +120,8 @@ pub enum Request {
     Correct(Correct),
     /// Brings tiles of the open correction.
     Tiles(CorrectedTiles),
+    /// Tells a device that was reset what lies around its robot.
+    Recall(Recall),
 }
 
 /// A message from the device.

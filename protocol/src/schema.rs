@@ -10,8 +10,9 @@ use postcard_schema::key::hash::fnv1a64::hash_ty_path;
 
 use crate::message::{
     BUILD_BYTES, CORRECTED_BYTES, CORRECTED_TILES, CRASH_FILE_BYTES, DIGEST_TILES, FIELD_SIDE,
-    MAX_BEAMS, MAX_FRONTIERS, MAX_SCANS, MOST_CORRECTED, NO_RETURN_MM, PATH_PAGE, ROAD_POINTS,
-    Reply, Request, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS, WANTED_TILES,
+    MAX_BEAMS, MAX_FRONTIERS, MAX_SCANS, MOST_CORRECTED, NO_RETURN_MM, PATH_PAGE, RECALLED_POINTS,
+    RECALLED_TRACK, ROAD_POINTS, Reply, Request, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS,
+    TRAIL_BYTES, WANTED_TILES,
 };
 
 /// Version of the protocol.
@@ -45,6 +46,9 @@ pub const SCHEMA: u32 = {
         CORRECTED_TILES,
         CORRECTED_BYTES,
         MOST_CORRECTED as usize,
+        TRAIL_BYTES,
+        RECALLED_POINTS,
+        RECALLED_TRACK,
         NO_RETURN_MM as usize,
         I16F16::FRAC_NBITS as usize,
         I4F12::FRAC_NBITS as usize,
@@ -76,6 +80,6 @@ mod tests {
     /// message changed as well, raise [`VERSION`].
     #[test]
     fn schema_hash_is_unchanged() {
-        assert_eq!((VERSION, SCHEMA), (1, 0xe68e_a4e5));
+        assert_eq!((VERSION, SCHEMA), (1, 0x7888_0058));
     }
 }

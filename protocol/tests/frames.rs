@@ -15,9 +15,9 @@ use fieldline_protocol::message::{
     self, BUILD_BYTES, Budget, CORRECTED_BYTES, CORRECTED_TILES, CRASH_FILE_BYTES, Cause, Control,
     CorrectedTile, CorrectedTiles, Counters, Crash, FENCE_CORNERS, FENCE_POLYGONS,
     FIELD_CELL_BYTES, FIELD_SIDE, Fence, FencePolygon, FieldRow, Hull, Identity, Laser, LoopLimits,
-    MAX_FRONTIERS, MAX_SCANS, Member, NO_RETURN_MM, Order, PATH_PAGE, Path, Preference, Reply,
-    Request, ResidualFrontier, ResidualReason, Start, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS,
-    Team, Tile, UnevenGround,
+    MAX_FRONTIERS, MAX_SCANS, Member, Motion, NO_RETURN_MM, Order, PATH_PAGE, Path, Preference,
+    RECALLED_POINTS, RECALLED_TRACK, Recall, RecalledPoint, Reply, Request, ResidualFrontier,
+    ResidualReason, Start, TILE_BYTES, TILE_SKELETON_BYTES, TILE_STAMPS, Team, Tile, UnevenGround,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use fixed::types::{I4F12, I16F16};
@@ -193,6 +193,7 @@ fn largest_part() -> CorrectedTiles {
         y: i16::MIN,
         shift: (i8::MIN, i8::MIN),
         bytes: u16::MAX,
+        trail: true,
     };
     CorrectedTiles {
         epoch: u16::MAX,
@@ -200,6 +201,26 @@ fn largest_part() -> CorrectedTiles {
         last: true,
         tiles: [tile; CORRECTED_TILES].into_iter().collect(),
         cells: [0xff; CORRECTED_BYTES].into_iter().collect(),
+    }
+}
+
+fn largest_recall() -> Recall {
+    Recall {
+        epoch: u16::MAX,
+        origin: (I16F16::MIN, I16F16::MIN),
+        points: [RecalledPoint {
+            x_mm: i16::MIN,
+            y_mm: i16::MIN,
+            returns: u8::MAX,
+        }; RECALLED_POINTS]
+            .into_iter()
+            .collect(),
+        track_end: Some(Motion {
+            x: I16F16::MIN,
+            y: I16F16::MIN,
+            yaw: I16F16::MIN,
+        }),
+        track: [[i8::MIN; 3]; RECALLED_TRACK].into_iter().collect(),
     }
 }
 
@@ -282,6 +303,8 @@ fn the_largest_messages_fit_and_fill_their_frames() {
     assert!(request_frame(1, &start).len() <= MAX_REQUEST_FRAME);
     let part = Request::Tiles(largest_part());
     assert!(request_frame(1, &part).len() <= MAX_REQUEST_FRAME);
+    let recall = Request::Recall(largest_recall());
+    assert!(request_frame(1, &recall).len() <= MAX_REQUEST_FRAME);
     for reply in [
         Reply::Hello(largest_identity()),
         Reply::Crash(largest_crash()),

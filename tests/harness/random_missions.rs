@@ -24,7 +24,7 @@ use host_sim::report::{MadeBy, Report, Trip};
 use host_sim::state::{Keeping, State, Store};
 use host_sim::trial::itinerary::{Orders, Pause};
 use host_sim::trial::mission::{Mission, OdometryProfile, explore, explore_kept};
-use host_sim::trial::{Flow, Moment, Progress, Watch};
+use host_sim::trial::{Flow, Moment, Progress, Record, Watch};
 use host_sim::world::World;
 
 use crate::fences;
@@ -146,13 +146,8 @@ impl Draw {
     #[must_use]
     pub fn go(&self) -> Outcome {
         let world = open(&self.world);
-        let (report, resumed) = self.disturbed(&world);
-        let undisturbed = (resumed > 0).then(|| {
-            let link = &mut device(Vec::new());
-            let run = explore(&self.mission, &world, link, &mut ());
-            run.unwrap_or_else(|error| panic!("{}: {error}", self.world))
-                .0
-        });
+        let (report, _, resumed) = self.disturbed(&world);
+        let undisturbed = (resumed > 0).then(|| self.undisturbed(&world).0);
         Outcome {
             report,
             undisturbed,
@@ -160,8 +155,23 @@ impl Draw {
         }
     }
 
-    /// Makes the mission. Returns the last host's report, and the number of resets and kills.
-    fn disturbed(&self, world: &World) -> (Report, u32) {
+    /// Makes the mission without resets and kills.
+    ///
+    /// # Panics
+    /// If the run cannot begin.
+    #[must_use]
+    pub fn undisturbed(&self, world: &World) -> (Report, Record) {
+        let run = explore(&self.mission, world, &mut device(Vec::new()), &mut ());
+        run.unwrap_or_else(|error| panic!("{}: {error}", self.world))
+    }
+
+    /// Makes the mission. Returns the last host's report and record, and the number of resets and
+    /// kills.
+    ///
+    /// # Panics
+    /// If a run cannot begin, or not go on.
+    #[must_use]
+    pub fn disturbed(&self, world: &World) -> (Report, Record, u32) {
         let kept: Rc<RefCell<Option<Vec<u8>>>> = Rc::default();
         let (mut killed, mut sent) = (0, 0);
         let kills = self.kills_ms.iter().copied().chain([u32::MAX]);
@@ -176,11 +186,11 @@ impl Draw {
             let mut link = device(later.map(|at| at - sent).collect());
             let mut kill = Kill(kill_ms);
             let run = explore_kept(&self.mission, world, &mut link, &mut kill, &mut keeping);
-            let (report, _) = run.unwrap_or_else(|error| panic!("{}: {error}", self.world));
+            let (report, record) = run.unwrap_or_else(|error| panic!("{}: {error}", self.world));
             killed += link.line().resets;
             sent += link.line().sent;
             if report.outcome.reason != "user" {
-                return (report, killed);
+                return (report, record, killed);
             }
             killed += 1;
         }

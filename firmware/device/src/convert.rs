@@ -20,7 +20,9 @@ mod team;
 mod tiles;
 
 pub use team::{packet, wire_packet};
-pub use tiles::{corrected_tile, correction, wire_progress, wire_refusal};
+pub use tiles::{
+    corrected_bytes, corrected_tile, correction, recall, wire_progress, wire_recall, wire_refusal,
+};
 
 /// Returns a wire quantity as f32.
 fn float(quantity: impl LossyInto<f32>) -> f32 {

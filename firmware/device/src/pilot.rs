@@ -23,9 +23,9 @@ use fieldline_planner::{
     Workspace, step,
 };
 use fieldline_protocol::message::{
-    Activity, Body, Command, Control, Correct, CorrectedTiles, CorrectionProgress, Cost, Events,
-    FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS, MAX_SCANS, Observation, Packet, Path,
-    Refusal, ResidualFrontier, Start, Status, Tile, Twist,
+    self, Activity, Body, Command, Control, Correct, CorrectedTiles, CorrectionProgress, Cost,
+    Events, FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS, MAX_SCANS, Observation, Packet,
+    Path, Recall, Refusal, ResidualFrontier, Start, Status, Tile, Twist,
 };
 use heapless::Vec;
 
@@ -35,6 +35,8 @@ use crate::log::{info, warning};
 
 // The planner's rows and scans must fit into the wire's bounded lists.
 const _: () = assert!(SIDE == FIELD_SIDE && MAX_SCANS == 2);
+const _: () = assert!(planner::RECALLED_POINTS == message::RECALLED_POINTS);
+const _: () = assert!(planner::RECALLED_TRACK == message::RECALLED_TRACK);
 // A retry must fit between two observations and the end of a command.
 const _: () = assert!(Config::PERIODS_S.1 * 1000.0 < STALE_MS as f32);
 
@@ -284,7 +286,7 @@ impl Pilot {
         let mut bytes = part.cells.as_slice();
         for (number, tile) in (u32::from(part.first)..).zip(&part.tiles) {
             let (cells, rest) = bytes
-                .split_at_checked(tile.bytes.into())
+                .split_at_checked(convert::corrected_bytes(tile))
                 .ok_or(Refusal::BadTile)?;
             bytes = rest;
             if progress.closed || number != u32::from(progress.next) {
@@ -300,6 +302,24 @@ impl Pilot {
             progress = state.finish_correction(config, workspace);
         }
         Ok(convert::wire_progress(progress))
+    }
+
+    /// Takes over what a device that was reset knew of the space around its robot.
+    ///
+    /// # Errors
+    /// [`Refusal::NotStarted`] without a session; [`Refusal::NoCorrection`] if the correction is
+    /// not the last one that was closed, or the robot has made a step; [`Refusal::BadCorrection`].
+    #[inline(never)]
+    pub fn recall<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        memory: &mut Memory<'_, TILES, SLOTS>,
+        recall: &Recall,
+    ) -> Result<CorrectionProgress, Refusal> {
+        let config = self.config.as_ref().ok_or(Refusal::NotStarted)?;
+        let recalled = memory.state.recall(config, &convert::recall(recall));
+        recalled
+            .map(convert::wire_progress)
+            .map_err(convert::wire_refusal)
     }
 
     /// Takes a packet that another robot of the team said. A packet whose tile is not whole is

@@ -363,6 +363,10 @@ impl Session {
                 let progress = self.pilot.tiles(memory, part);
                 progress.map_or_else(Reply::Refused, Reply::Corrected)
             }
+            Request::Recall(recall) => {
+                let progress = self.pilot.recall(memory, recall);
+                progress.map_or_else(Reply::Refused, Reply::Corrected)
+            }
             // Other functions answer these.
             Request::Hello { .. } | Request::Observation(_) => Reply::Refused(Refusal::OutOfOrder),
         };

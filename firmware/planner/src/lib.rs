@@ -129,7 +129,8 @@ pub use input::{INVALID_MM, Input, InputError, InputFaults, NO_RETURN_MM};
 pub use localise::{Location, Quality};
 pub use planner::{
     Capacity, CellKind, CorrectedTile, Correction, CorrectionError, CorrectionProgress, F405,
-    FieldRow, LoopCounts, Memory, Output, Planner, State, Task, TaskError, Workspace, step,
+    FieldRow, LoopCounts, Memory, Output, Planner, RECALLED_POINTS, RECALLED_TRACK, Recall,
+    RecalledPoint, State, Task, TaskError, Workspace, step,
 };
 pub use profiling::{Stage, StageTimer};
 pub use robot::{LaserMount, MAX_BEAMS, RobotShape};

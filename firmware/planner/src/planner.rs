@@ -27,6 +27,10 @@ mod memory;
 mod plan;
 mod prefer;
 mod readout;
+#[cfg(not(feature = "internals"))]
+mod recall;
+#[cfg(feature = "internals")]
+pub mod recall;
 mod sight;
 mod state;
 mod steer;
@@ -41,6 +45,7 @@ pub use correction::{CorrectedTile, Correction, CorrectionError, CorrectionProgr
 pub use errand::{Task, TaskError};
 pub use memory::{Capacity, F405, Memory, Planner};
 pub use readout::LoopCounts;
+pub use recall::{RECALLED_POINTS, RECALLED_TRACK, Recall, RecalledPoint};
 pub use state::State;
 pub use workspace::{CellKind, FieldRow, Workspace};
 
@@ -452,7 +457,7 @@ fn sense<const TILES: usize, const SLOTS: usize>(
             true if !may_stand(config, &input.pose) => Status::Fault(Fault::StartForbidden),
             true => Status::Exploring,
         };
-        if state.started {
+        if state.started && !state.is_recalled {
             let odom = state.localiser.odom();
             state.ground.surround(&odom, &config.robot);
         }

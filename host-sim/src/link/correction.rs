@@ -74,12 +74,22 @@ pub struct CorrectedTile {
     pub shift: (i8, i8),
     /// The cells; without a known one the tile is forgotten.
     pub classes: Classes,
+    /// Where the robot's centre was, for a device that was reset: rows of blocks of 2 × 2 cells.
+    pub trail: [u16; 16],
 }
 
 impl CorrectedTile {
     /// Returns true if nothing in the tile is known.
     fn is_forgotten(&self) -> bool {
         self.classes == Classes::default()
+    }
+
+    /// Returns the trail as the wire has it; empty without one.
+    fn trail_bytes(&self) -> Vec<u8> {
+        if self.trail == [0; 16] || self.is_forgotten() {
+            return Vec::new();
+        }
+        self.trail.into_iter().flat_map(u16::to_le_bytes).collect()
     }
 
     /// Returns the cells as the wire has them.
@@ -134,9 +144,9 @@ impl MapCorrection {
             ..wire::CorrectedTiles::default()
         };
         for tile in self.in_order().skip(first.into()) {
-            let bytes = tile.bytes();
+            let (bytes, trail) = (tile.bytes(), tile.trail_bytes());
             let has_room = part.tiles.len() < CORRECTED_TILES
-                && part.cells.len() + bytes.len() <= CORRECTED_BYTES;
+                && part.cells.len() + bytes.len() + trail.len() <= CORRECTED_BYTES;
             if !has_room {
                 part.last = false;
                 break;
@@ -146,10 +156,12 @@ impl MapCorrection {
                 y: tile.key.1,
                 shift: tile.shift,
                 bytes: bytes.len() as u16,
+                trail: !trail.is_empty(),
             };
-            // There is room for both.
+            // There is room for all of it.
             let _ = part.tiles.push(head);
             let _ = part.cells.extend_from_slice(&bytes);
+            let _ = part.cells.extend_from_slice(&trail);
         }
         part
     }
@@ -168,6 +180,7 @@ mod tests {
             key: (x, -x),
             shift: (1, -1),
             classes,
+            trail: [0; 16],
         }
     }
 

@@ -103,6 +103,7 @@ fn answer(
         Request::Say => Reply::Say(pilot.say(memory)?),
         Request::Correct(correct) => Reply::Corrected(pilot.correct(memory, correct)?),
         Request::Tiles(part) => Reply::Corrected(pilot.tiles(memory, part)?),
+        Request::Recall(recall) => Reply::Corrected(pilot.recall(memory, recall)?),
         Request::Hello { .. } => return Err(Refusal::OutOfOrder),
     })
 }

@@ -16,7 +16,7 @@ use thiserror::Error;
 
 use fieldline_protocol::message::{
     Command, Control, Correct, CorrectedTiles, CorrectionProgress, FieldRow, Identity, Observation,
-    Packet, Path, Reply, Request, ResidualFrontier, Status, Tile,
+    Packet, Path, Recall, Reply, Request, ResidualFrontier, Status, Tile,
 };
 use fieldline_protocol::{SCHEMA, VERSION};
 use serde::{Deserialize, Serialize};
@@ -236,6 +236,18 @@ pub trait Link {
         match self.ask(&Request::Tiles(part.clone()))? {
             Reply::Corrected(progress) => Ok(progress),
             _ => Err(unexpected("a part of a correction")),
+        }
+    }
+
+    /// Tells a device that was reset what lies around its robot, after its map and before its first
+    /// step.
+    ///
+    /// # Errors
+    /// As [`Link::open_correction`].
+    fn recall(&mut self, recall: &Recall) -> Result<(), LinkError> {
+        match self.ask(&Request::Recall(recall.clone()))? {
+            Reply::Corrected(_) => Ok(()),
+            _ => Err(unexpected("a recall")),
         }
     }
 

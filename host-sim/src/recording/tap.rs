@@ -31,7 +31,8 @@ const fn changes(request: &Request) -> bool {
         | Request::Hear(_)
         | Request::Say
         | Request::Correct(_)
-        | Request::Tiles(_) => true,
+        | Request::Tiles(_)
+        | Request::Recall(_) => true,
         Request::Hello { .. }
         | Request::Tile { .. }
         | Request::FieldRow { .. }

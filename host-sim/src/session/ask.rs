@@ -4,7 +4,7 @@
 //! nonce of a hello, sequence numbers. So it outlives a change of the schema.
 
 use fieldline_protocol::message::{
-    Command, Control, Correct, CorrectedTiles, FieldRow, Observation, Packet, Start, Status,
+    Command, Control, Correct, CorrectedTiles, FieldRow, Observation, Packet, Recall, Start, Status,
 };
 use fixed::types::I16F16;
 use serde::{Deserialize, Serialize};
@@ -48,6 +48,8 @@ pub enum Ask {
     Correct(Box<Correct>),
     /// Brings tiles of a correction.
     CorrectTiles(Box<CorrectedTiles>),
+    /// Tells what lies around the robot.
+    Recall(Box<Recall>),
     /// Reads a map tile.
     Tile {
         /// Tile column.
@@ -120,6 +122,7 @@ impl Ask {
                 .map_or(Answer::Done, |said| Answer::Said(Box::new(said)))),
             Self::Correct(correct) => link.open_correction(correct).map(|_| Answer::Done),
             Self::CorrectTiles(part) => link.send_tiles(part).map(|_| Answer::Done),
+            Self::Recall(recall) => link.recall(recall).map(|()| Answer::Done),
             Self::Tile { x, y } => link.tile(*x, *y).map(|_| Answer::Done),
             Self::FieldRow { row } => Ok(link
                 .field_row(*row)?

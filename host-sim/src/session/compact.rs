@@ -6,7 +6,8 @@
 
 use fieldline_protocol::message::{
     Beacon, Budget, Correct, CorrectedTiles, Digest, Fence, Hull, Laser, LoopLimits, Member,
-    Motion, Observation, Pose, SpaceField, Start, Team, TeamTile, Twist, UnevenGround, Wanted,
+    Motion, Observation, Pose, Recall, SpaceField, Start, Team, TeamTile, Twist, UnevenGround,
+    Wanted,
 };
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
@@ -37,6 +38,7 @@ fn default_of(key: &str) -> Option<Map<String, Value>> {
         "sbpf" | "esbpf" | "Sbpf" | "Esbpf" => json(SpaceField::default()),
         "correct" => json(Correct::default()),
         "correct_tiles" => json(CorrectedTiles::default()),
+        "recall" => json(Recall::default()),
         "motion" => json(Motion::default()),
         "Beacon" => json(Beacon::default()),
         "Digest" => json(Digest::default()),

@@ -140,6 +140,7 @@ impl LoopCloser {
                 key: *key,
                 shift: self.shift_of(*key, poses)?,
                 classes: canvas.planes(*key).unwrap_or_default(),
+                trail: [0; 16],
             })
         };
         keys.iter().map(tile).collect()

@@ -24,7 +24,7 @@ use crate::report::MadeBy;
 /// Name of the file in a run's folder.
 pub const NAME: &str = "session.state";
 /// Version of the format.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 
 const MAGIC: [u8; 8] = *b"FLDSTATE";
 /// Bytes before the body, and after it.
@@ -79,8 +79,8 @@ pub enum Fault {
     Io(std::io::Error),
     /// It does not begin as a state does.
     Foreign,
-    /// Its format is of this version, which is later than [`VERSION`].
-    Newer(u16),
+    /// Its format is of this version, and not of [`VERSION`].
+    Other(u16),
     /// It has this many bytes, and says that it has another number.
     Cut(usize, usize),
     /// Its checksum is wrong.
@@ -100,7 +100,7 @@ impl fmt::Display for StateError {
                  killed or interrupted, and one that has ended keeps no state"
             ),
             Fault::Foreign => write!(f, "{path} is no state of a run; {AGAIN}"),
-            Fault::Newer(version) => write!(
+            Fault::Other(version) => write!(
                 f,
                 "{path} has format {version}, and this program knows {VERSION}; resume it with the \
                  program that kept it"
@@ -150,8 +150,8 @@ impl State {
             return Err(cut(HEAD + TAIL));
         };
         let version = u16::from_le_bytes([head[8], head[9]]);
-        if version > VERSION {
-            return Err(Fault::Newer(version));
+        if version != VERSION {
+            return Err(Fault::Other(version));
         }
         let length = u32::from_le_bytes([head[10], head[11], head[12], head[13]]) as usize;
         let want = HEAD.saturating_add(length).saturating_add(TAIL);
@@ -162,7 +162,7 @@ impl State {
             return Err(cut(want));
         };
         let sum = CRC.checksum(&bytes[..HEAD + length]).to_le_bytes();
-        if tail != sum || version != VERSION {
+        if tail != sum {
             return Err(Fault::Damaged);
         }
         match postcard::take_from_bytes(body) {
@@ -243,7 +243,7 @@ mod tests {
             let fault = State::of_bytes(&wrong).expect_err("a byte is wrong");
             let wanted = match place {
                 0..8 => matches!(fault, Fault::Foreign),
-                8..10 => matches!(fault, Fault::Newer(_) | Fault::Damaged),
+                8..10 => matches!(fault, Fault::Other(_)),
                 10..14 => matches!(fault, Fault::Cut(..) | Fault::Damaged),
                 _ => matches!(fault, Fault::Damaged),
             };
@@ -252,10 +252,13 @@ mod tests {
     }
 
     #[test]
-    fn a_newer_and_a_foreign_file_are_named() {
-        let mut newer = sample().to_bytes();
-        newer[8] = 2;
-        assert!(matches!(State::of_bytes(&newer), Err(Fault::Newer(2))));
+    fn a_file_of_another_version_and_a_foreign_one_are_named() {
+        for version in [1, 3] {
+            let mut other = sample().to_bytes();
+            other[8] = version;
+            let fault = State::of_bytes(&other).expect_err("it has another version");
+            assert!(matches!(fault, Fault::Other(it) if it == u16::from(version)));
+        }
         assert!(matches!(
             State::of_bytes(b"{\"a\": 1}"),
             Err(Fault::Foreign)

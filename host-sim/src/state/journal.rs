@@ -14,7 +14,7 @@
 use core::cell::RefCell;
 use std::rc::Rc;
 
-use fieldline_protocol::message::{Command, Path, Reply, Request, Status};
+use fieldline_protocol::message::{Command, CorrectionProgress, Path, Reply, Request, Status};
 use serde::{Deserialize, Serialize};
 
 use crate::link::correction::MapCorrection;
@@ -27,7 +27,7 @@ pub enum Answer {
     Command(Command),
     /// To a control.
     Status(Status),
-    /// To a correction of the map.
+    /// To a correction of the map, or to a recall.
     Done,
     /// A request was refused for this reason.
     Refused(String),
@@ -170,6 +170,14 @@ impl Link for Recorder<'_> {
                     },
                 )?;
                 Ok(Reply::Command(command))
+            }
+            Request::Recall(recall) => {
+                self.answer(
+                    |link| link.recall(recall),
+                    |()| Answer::Done,
+                    |answer| (answer == Answer::Done).then_some(()),
+                )?;
+                Ok(Reply::Corrected(CorrectionProgress::default()))
             }
             Request::Tile { .. } if is_again => Ok(Reply::Tile(None)),
             Request::FieldRow { .. } if is_again => Ok(Reply::FieldRow(None)),

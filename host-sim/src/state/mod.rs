@@ -5,7 +5,7 @@
 //! run ─────────────────────────────────► session.state
 //!
 //! session.state ─► the host's answers again, step by step ─► the run where it was
-//!               └► map, pose, home, orders ─► the device, as after a reset
+//!               └► map, pose, surroundings, home, orders ─► the device, as after a reset
 //! ```
 //!
 //! A run is a function of its options and of the planner's answers: the simulator draws all of its
@@ -14,11 +14,11 @@
 //! trajectory and the host's copy of the map are the same as before, bit for bit. That needs no
 //! planner, so it takes a small part of the time.
 //!
-//! The device gets its map and its pose by the messages with which a device that was reset gets
-//! them, and is told where home is, what is left of its budget and which drive is in hand. What it
-//! does not get is what such a device has lost: evidence, trail and track, goals that were given
-//! up, the state of loops and patrols. So it drives on as a device that was reset does, and not as
-//! one that was not.
+//! The device gets its map, its trail, its pose, the obstacle points near the robot and the track
+//! along which it came by the messages with which a device that was reset gets them, and is told
+//! where home is, what is left of its budget and which drive is in hand. What it does not get is
+//! what such a device has lost: evidence, goals that were given up, the state of loops and patrols.
+//! So it drives on as a device that was reset does, and not as one that was not.
 //!
 //! Invariants: a file that has its name is whole. It is written beside, and renamed. A run that has
 //! ended, and so cannot go on, keeps none.

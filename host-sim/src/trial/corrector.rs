@@ -5,9 +5,10 @@
 //! the map is read before and after the largest corrections.
 //!
 //! A device that was reset has lost its session. If the run resumes, it gets the same session, and
-//! its map back by a correction with every tile of the copy, and is told where home is, what is
-//! left of its budget and which drive is in hand. The state of its strategy is not restored: goals
-//! that were given up are tried again, and loops and visits begin anew.
+//! its map back by a correction with every tile of the copy, and by a recall what lies around its
+//! robot and how it came there. It is told where home is, what is left of its budget and which
+//! drive is in hand. The state of its strategy is not restored: goals that were given up are tried
+//! again, and loops and visits begin anew.
 
 use fieldline_device::convert::quantity;
 use fieldline_planner::geometry::Pose;
@@ -150,9 +151,10 @@ fn resume(
         budget: itinerary.budget_left(record),
         ..setup.start.clone()
     }))?;
-    let correction = mirror.whole();
+    let (correction, recall) = (mirror.whole(), mirror.recall());
     cast.link.correct(&correction)?;
-    mirror.resume(&correction);
+    cast.link.recall(&recall)?;
+    mirror.resume(&correction, &recall);
     if let Some(home) = mirror.home() {
         cast.link.control(&set_home(&home))?;
     }

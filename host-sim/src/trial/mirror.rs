@@ -13,7 +13,8 @@ use fieldline_planner::geometry::{Cell, MapFromOdom, MapPose, OdomPose, Pose};
 use fieldline_planner::localise::Localiser;
 use fieldline_planner::map::{Class, Map};
 use fieldline_planner::math;
-use fieldline_protocol::message::{Finish, Observation, Start, Status, Tile};
+use fieldline_planner::planner::recall::Surroundings;
+use fieldline_protocol::message::{Finish, Observation, Recall, Start, Status, Tile};
 
 use super::relief::Relief;
 use super::snapshot::Window;
@@ -30,6 +31,7 @@ pub struct Mirror {
     config: Option<Config>,
     localiser: Localiser,
     map: Box<Map<TILES, SLOTS>>,
+    surroundings: Surroundings,
     pose: Pose,
     /// Where the session began, in the map.
     home: Option<Pose>,
@@ -56,6 +58,7 @@ impl Mirror {
             config,
             localiser: Localiser::new(),
             map,
+            surroundings: Surroundings::new(),
             pose,
             home: None,
             epoch: 0,
@@ -83,9 +86,12 @@ impl Mirror {
         if status != Status::NoScan {
             self.home.get_or_insert(pose);
         }
+        let input = Input { pose, ..input };
         if self.localiser.may_enter() {
-            self.map.observe(config, &Input { pose, ..input });
+            self.map.observe(config, &input);
         }
+        let (odom, started) = (self.localiser.odom(), status != Status::NoScan);
+        self.surroundings.observe(config, (&input, &odom), started);
         if config.ground().is_some() {
             self.map.compact(&mut ());
         }
@@ -166,15 +172,18 @@ impl Mirror {
             let at = (tile.key.0.into(), tile.key.1.into());
             self.map.expand(at, &mut ());
             self.map.replace(at, &tile.classes, false);
+            self.map.add_trail(at, &tile.trail);
         }
         self.home = self.home.map(|home| moved(home, correction));
         let motion = convert::correction(&correction.opening());
-        let MapPose(before) = self.localiser.to_map(&self.localiser.odom());
-        self.localiser.correct_pose(&MapFromOdom {
+        let motion = MapFromOdom {
             x_m: motion.x_m,
             y_m: motion.y_m,
             yaw_rad: math::wrap(motion.yaw_rad),
-        });
+        };
+        let MapPose(before) = self.localiser.to_map(&self.localiser.odom());
+        self.localiser.correct_pose(&motion);
+        self.surroundings.correct(&motion);
         let MapPose(pose) = self.localiser.to_map(&self.localiser.odom());
         self.map.end_correction(before.point(), pose.point());
         self.pose = pose;
@@ -190,6 +199,7 @@ impl Mirror {
             key,
             shift: (0, 0),
             classes,
+            trail: self.map.trail_rows((key.0.into(), key.1.into())),
         };
         MapCorrection {
             epoch: self.epoch.saturating_add(1),
@@ -198,13 +208,21 @@ impl Mirror {
         }
     }
 
+    /// Returns what a device that has taken [`Self::whole`] is told of the space around the robot.
+    #[must_use]
+    pub fn recall(&self) -> Recall {
+        let (epoch, odom) = (self.epoch.saturating_add(1), self.localiser.odom());
+        convert::wire_recall(&self.surroundings.recall(epoch, &odom))
+    }
+
     /// Begins anew with what a device that was reset was given.
-    pub fn resume(&mut self, correction: &MapCorrection) {
+    pub fn resume(&mut self, correction: &MapCorrection, recall: &Recall) {
         self.localiser = Localiser::new();
         if let Some(config) = &self.config {
             self.map.begin(config);
         }
         self.correct(correction);
+        self.surroundings.take_over(&convert::recall(recall));
     }
 
     /// Returns true if a cell has been measured.

@@ -103,7 +103,7 @@ impl Link for Script {
             Request::Path { .. } => Reply::Path(Path::default()),
             Request::Hear(_) => Reply::Heard,
             Request::Say => Reply::Say(None),
-            Request::Correct(_) | Request::Tiles(_) => {
+            Request::Correct(_) | Request::Tiles(_) | Request::Recall(_) => {
                 return Err(LinkError::Refused("a script has no map".into()));
             }
         })

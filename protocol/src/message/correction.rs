@@ -10,6 +10,9 @@
 //! nothing is taken: every answer has the number of the first tile that is missing. A `correct`
 //! with a greater epoch begins anew. The motion and all shifts act when the correction closes.
 //!
+//! A device that was reset is told by a *recall* what the map does not have: the obstacle points
+//! near the robot, and the track along which it came.
+//!
 //! Units: metres, radians; map cells of 10 cm; tiles of 32 × 32 cells.
 
 use fixed::types::I16F16;
@@ -21,6 +24,12 @@ use serde::{Deserialize, Serialize};
 pub const CORRECTED_TILES: usize = 10;
 /// Maximum number of bytes of all cells in a part: an observation is longer.
 pub const CORRECTED_BYTES: usize = 640;
+/// Number of bytes of the trail in a tile.
+pub const TRAIL_BYTES: usize = 32;
+/// Maximum number of points in a recall.
+pub const RECALLED_POINTS: usize = 128;
+/// Maximum number of differences in a recalled track.
+pub const RECALLED_TRACK: usize = 56;
 /// Maximum number of tiles in a correction: twice those of the default image's map, which are
 /// forgotten in one place and known in another.
 pub const MOST_CORRECTED: u16 = 512;
@@ -59,6 +68,10 @@ pub struct CorrectedTile {
     /// Number of bytes of its cells in [`CorrectedTiles::cells`]. Without any, nothing in the tile
     /// is known, and it is forgotten.
     pub bytes: u16,
+    /// True if [`TRAIL_BYTES`] bytes follow its cells: where the robot's centre was. A device that
+    /// was reset has lost it.
+    #[serde(default)]
+    pub trail: bool,
 }
 
 /// A part of a correction.
@@ -72,7 +85,9 @@ pub struct CorrectedTiles {
     pub last: bool,
     /// The tiles.
     pub tiles: Vec<CorrectedTile, CORRECTED_TILES>,
-    /// The cells of all of them, one tile after the other, each as [`super::TeamTile::cells`].
+    /// The cells of all of them, one tile after the other, each as [`super::TeamTile::cells`], and
+    /// each with its trail behind it: 16 rows of 16 blocks of 2 × 2 cells, the least y first, the
+    /// least x in the lowest bit; each row a little-endian word of two bytes.
     pub cells: Vec<u8, CORRECTED_BYTES>,
 }
 
@@ -85,4 +100,33 @@ pub struct CorrectionProgress {
     pub next: u16,
     /// True if it is closed: the map and the pose are corrected.
     pub closed: bool,
+}
+
+/// An obstacle point near the robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct RecalledPoint {
+    /// Millimetres east of the origin of the [`Recall`].
+    pub x_mm: i16,
+    /// Millimetres north of it.
+    pub y_mm: i16,
+    /// Number of returns of the point, 1 to 8; 255 for a point beside the hull of a robot that
+    /// starts, which nothing has seen.
+    pub returns: u8,
+}
+
+/// Tells a device that was reset what it knew of the space around its robot. It comes after the
+/// correction that gave the device its map back, and before the first observation.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, Schema)]
+pub struct Recall {
+    /// The correction that gave the map back: the last one that was closed.
+    pub epoch: u16,
+    /// From where the points are told, by odometry: metres east and north.
+    pub origin: (I16F16, I16F16),
+    /// The nearest obstacle points.
+    pub points: Vec<RecalledPoint, RECALLED_POINTS>,
+    /// Where the track ends, in the map: metres, metres, radians.
+    pub track_end: Option<Motion>,
+    /// The differences of the track's poses, the oldest first, each in the frame of the older pose:
+    /// ahead in 4 mm, to the left in 1 mm, turned in 0.01 rad.
+    pub track: Vec<[i8; 3], RECALLED_TRACK>,
 }

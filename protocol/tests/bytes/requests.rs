@@ -4,8 +4,8 @@ use fieldline_protocol::check::Kind;
 use fieldline_protocol::message::{
     Budget, Control, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress, Fence,
     FencePolygon, Hull, INVALID_MM, Laser, LoopLimits, Member, Motion, NO_RETURN_MM, Observation,
-    Order, Pose, Preference, Reply, Request, Scan, SpaceField, Start, Strategy, Team, TeamTile,
-    Twist, UnevenGround,
+    Order, Pose, Preference, Recall, RecalledPoint, Reply, Request, Scan, SpaceField, Start,
+    Strategy, TRAIL_BYTES, Team, TeamTile, Twist, UnevenGround,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -308,8 +308,11 @@ fn corrections() {
         y: -1,
         shift,
         bytes,
+        trail: bytes > 0,
     };
     let free = TeamTile::pack([1; 1024].into_iter());
+    let mut trail = [0; TRAIL_BYTES];
+    trail[3] = 0x80;
     let part = CorrectedTiles {
         epoch: 300,
         first: 0,
@@ -317,17 +320,44 @@ fn corrections() {
         tiles: [tile(64, (-1, 5), 16), tile(0, (0, 0), 0)]
             .into_iter()
             .collect(),
-        cells: free.iter().copied().collect(),
+        cells: free.iter().copied().chain(trail).collect(),
     };
     let head = [
         10, 0xac, 0x02, 0, 1, // the last part
-        2, 0x80, 0x01, 1, 0xff, 5, 16, // sixteen runs
-        0, 1, 0, 0, 0, // a tile that is forgotten
-        16,
+        2, 0x80, 0x01, 1, 0xff, 5, 16, 1, // sixteen runs, and a trail
+        0, 1, 0, 0, 0, 0, // a tile that is forgotten
+        48,
     ];
     request_is(
         Request::Tiles(part),
-        &[&head[..], &[63 << 2 | 1; 16]].concat(),
+        &[&head[..], &[63 << 2 | 1; 16], &trail].concat(),
+    );
+    let recall = Recall {
+        epoch: 300,
+        origin: (long(1.0), long(-0.5)),
+        points: [RecalledPoint {
+            x_mm: -400,
+            y_mm: 64,
+            returns: 8,
+        }]
+        .into_iter()
+        .collect(),
+        track_end: Some(Motion {
+            x: long(1.0),
+            y: long(-0.5),
+            yaw: long(0.0),
+        }),
+        track: [[100, -1, 0]].into_iter().collect(),
+    };
+    request_is(
+        Request::Recall(recall),
+        &[
+            11, 0xac, 0x02, // epoch 300
+            0x80, 0x80, 0x08, 0xff, 0xff, 0x03, // from 1 m, −0.5 m
+            1, 0x9f, 0x06, 0x80, 0x01, 8, // a point of eight returns
+            1, 0x80, 0x80, 0x08, 0xff, 0xff, 0x03, 0, // the track's end
+            1, 100, 0xff, 0, // 0.4 m ahead, 1 mm to the right
+        ],
     );
     let progress = CorrectionProgress {
         epoch: 300,

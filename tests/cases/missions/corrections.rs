@@ -109,6 +109,7 @@ impl Moves {
                 key: *key,
                 shift,
                 classes,
+                trail: [0; 16],
             }
         };
         let is_news = |tile: &CorrectedTile| {

@@ -117,15 +117,25 @@ fn a_few_missions_at_random() {
 mod full {
     use super::*;
 
-    /// Prints the table. `FIELDLINE_SEEDS=K` makes K missions.
+    /// Prints the table. `FIELDLINE_SEEDS=K` makes the first K missions, `FIELDLINE_SEEDS=A..B`
+    /// those of the seeds from A on and before B.
     #[test]
     #[ignore = "takes an hour: 1000 missions; tests/run --full runs it"]
     fn many_missions_at_random() {
-        let fewer = std::env::var("FIELDLINE_SEEDS").ok().map(|text| {
-            text.parse().unwrap_or_else(|_| {
-                panic!("FIELDLINE_SEEDS must be a number of seeds, as in FIELDLINE_SEEDS=10")
+        let asked = std::env::var("FIELDLINE_SEEDS").ok();
+        let seeds = asked.map_or(0..MANY, |text| seeds(&text));
+        println!("{}", table(&missions(seeds)));
+    }
+
+    fn seeds(text: &str) -> Range<u64> {
+        let number = |part: &str| -> u64 {
+            part.parse().unwrap_or_else(|_| {
+                panic!("FIELDLINE_SEEDS must be a number of seeds or A..B, and not {text}")
             })
-        });
-        println!("{}", table(&missions(0..fewer.unwrap_or(MANY))));
+        };
+        match text.split_once("..") {
+            Some((first, end)) => number(first)..number(end),
+            None => 0..number(text),
+        }
     }
 }

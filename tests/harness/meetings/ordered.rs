@@ -126,7 +126,7 @@ impl Link for Ordered {
                 let config = self.config()?;
                 Reply::Say(self.state.say(&config).map(|it| convert::wire_packet(&it)))
             }
-            Request::Correct(_) | Request::Tiles(_) => {
+            Request::Correct(_) | Request::Tiles(_) | Request::Recall(_) => {
                 return Err(LinkError::Refused("nobody corrects this map".into()));
             }
         })

@@ -2,10 +2,12 @@
 //!
 //! Units: map cells.
 
-use fieldline_planner::{CorrectedTile, Correction, CorrectionError, CorrectionProgress};
+use fieldline_planner::{
+    CorrectedTile, Correction, CorrectionError, CorrectionProgress, Point, Recall, RecalledPoint,
+};
 use fieldline_protocol::message as wire;
 
-use super::float;
+use super::{float, quantity};
 
 /// Returns the low and the high plane of a tile from its runs; `None` if they do not have the cells
 /// of a tile.
@@ -43,10 +45,16 @@ pub fn correction(correct: &wire::Correct) -> Correction {
     }
 }
 
-/// Converts a tile of a correction from the wire. `bytes` are its cells. `None` if they are not
-/// those of a tile.
+/// Converts a tile of a correction from the wire. `bytes` are its cells, and its trail if it has
+/// one. `None` if they are not those of a tile.
 #[must_use]
 pub fn corrected_tile(tile: &wire::CorrectedTile, bytes: &[u8]) -> Option<CorrectedTile> {
+    let (bytes, told) = bytes.split_at_checked(tile.bytes.into())?;
+    let mut trail = [0; 16];
+    let (told, _) = told.as_chunks::<2>();
+    for (row, &bytes) in trail.iter_mut().zip(told) {
+        *row = u16::from_le_bytes(bytes);
+    }
     Some(CorrectedTile {
         tile: (tile.x, tile.y),
         shift: tile.shift,
@@ -55,7 +63,60 @@ pub fn corrected_tile(tile: &wire::CorrectedTile, bytes: &[u8]) -> Option<Correc
         } else {
             planes(bytes)?
         },
+        trail,
     })
+}
+
+/// Returns the number of bytes that a tile of a correction has: cells and trail.
+#[must_use]
+pub fn corrected_bytes(tile: &wire::CorrectedTile) -> usize {
+    let trail = if tile.trail { wire::TRAIL_BYTES } else { 0 };
+    usize::from(tile.bytes) + trail
+}
+
+/// Converts a recall from the wire.
+#[must_use]
+#[inline(never)]
+pub fn recall(recall: &wire::Recall) -> Recall {
+    let (x, y) = recall.origin;
+    let point = |point: &wire::RecalledPoint| RecalledPoint {
+        x_mm: point.x_mm,
+        y_mm: point.y_mm,
+        returns: point.returns,
+    };
+    Recall {
+        epoch: recall.epoch,
+        from: Point {
+            x_m: float(x),
+            y_m: float(y),
+        },
+        points: recall.points.iter().map(point).collect(),
+        track_end: recall
+            .track_end
+            .map(|end| [end.x, end.y, end.yaw].map(float)),
+        track: recall.track.clone(),
+    }
+}
+
+/// Converts a recall for the wire.
+#[must_use]
+pub fn wire_recall(recall: &Recall) -> wire::Recall {
+    let point = |point: &RecalledPoint| wire::RecalledPoint {
+        x_mm: point.x_mm,
+        y_mm: point.y_mm,
+        returns: point.returns,
+    };
+    wire::Recall {
+        epoch: recall.epoch,
+        origin: (quantity(recall.from.x_m), quantity(recall.from.y_m)),
+        points: recall.points.iter().map(point).collect(),
+        track_end: recall.track_end.map(|[x, y, yaw]| wire::Motion {
+            x: quantity(x),
+            y: quantity(y),
+            yaw: quantity(yaw),
+        }),
+        track: recall.track.clone(),
+    }
 }
 
 /// Converts the progress of a correction for the wire.

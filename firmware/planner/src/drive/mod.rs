@@ -29,7 +29,7 @@ mod recovery;
 mod roll_out;
 mod search_query;
 pub(crate) mod side_slope;
-mod track;
+pub(crate) mod track;
 
 pub use collision::CollisionChecker;
 pub use hull::Place;
@@ -134,6 +134,16 @@ impl Drive {
         if !self.retreats {
             self.track.record(pose);
         }
+    }
+
+    /// Returns the robot's track.
+    pub(crate) const fn track(&self) -> &Track {
+        &self.track
+    }
+
+    /// Takes over the track of a robot that came where this one is.
+    pub(crate) const fn came_along(&mut self, track: Track) {
+        self.track = track;
     }
 
     /// Goes on after a correction of the map: the track moves with the robot, and what was begun in

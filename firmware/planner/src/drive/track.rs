@@ -25,7 +25,7 @@ use crate::geometry::{MapFromOdom, MapPose, OdomPose, Point, Pose, RobotFrame, T
 use crate::math;
 
 /// Differences that are kept: at least 2.8 m of way, and 28 m of straight way.
-const MOST: usize = 56;
+pub(crate) const MOST: usize = 56;
 /// A pose this far from the last one is recorded, metres; or turned this much, radians. The hull's
 /// corners move as far in both.
 const STEP_M: f32 = 0.05;
@@ -52,7 +52,7 @@ const BACK_MPS: f32 = 0.15;
 const BACK_RADPS: f32 = 0.5;
 
 /// The last poses, as a ring of differences.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Track {
     differences: [[i8; 3]; MOST],
     /// Number of differences, and the place of the next one.
@@ -102,6 +102,37 @@ impl Track {
         (self.len, self.has_last) = (0, false);
     }
 
+    /// Returns the last pose, x, y and yaw; `None` before the first one.
+    pub(crate) fn end(&self) -> Option<[f32; 3]> {
+        self.has_last.then_some(self.last)
+    }
+
+    /// Returns the differences, the oldest first, in units of 4 mm, 1 mm and 0.01 rad.
+    pub(crate) fn differences(&self) -> impl Iterator<Item = [i8; 3]> + '_ {
+        (1..=self.len).rev().map(|back| self.difference(back))
+    }
+
+    /// Returns the track that ends at this pose after these differences, the oldest first. Of more
+    /// than [`MOST`] the last ones count.
+    pub(crate) fn of(end: Option<[f32; 3]>, differences: impl Iterator<Item = [i8; 3]>) -> Self {
+        let mut track = Self::new();
+        let Some(end) = end else {
+            return track;
+        };
+        (track.last, track.has_last) = (end, true);
+        differences.for_each(|units| track.push(units));
+        track
+    }
+
+    /// Appends a difference; of a full track the oldest one goes.
+    fn push(&mut self, units: [i8; 3]) {
+        if let Some(place) = self.differences.get_mut(usize::from(self.next)) {
+            *place = units;
+        }
+        self.next = (self.next + 1) % MOST as u8;
+        self.len = (self.len + 1).min(MOST as u8);
+    }
+
     /// Moves the track with the robot.
     pub(crate) fn correct(&mut self, motion: &MapFromOdom) {
         let [x_m, y_m, yaw_rad] = self.last;
@@ -141,11 +172,7 @@ impl Track {
                 (self.last, self.has_last) = (now, true);
             }
             Some(units) => {
-                if let Some(place) = self.differences.get_mut(usize::from(self.next)) {
-                    *place = units;
-                }
-                self.next = (self.next + 1) % MOST as u8;
-                self.len = (self.len + 1).min(MOST as u8);
+                self.push(units);
                 let [dx, dy, turn] = metres(units);
                 let (sin, cos) = math::sin_cos(self.last[2]);
                 self.last[0] += dx * cos - dy * sin;

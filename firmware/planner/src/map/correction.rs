@@ -6,7 +6,7 @@
 //! | --- | --- |
 //! | cells | as told; without a known cell the tile is forgotten, and its page is spare |
 //! | evidence | none: the next beam counts from the class, 12 of an obstacle, 5 of a free cell |
-//! | trail | forgotten here; the planner puts it where its places go |
+//! | trail | forgotten here; the planner puts it where its places go, and adds what is told |
 //! | heights of uneven ground | they stay with the tile: a shift is a small part of its side |
 //! | version | in a team the first epoch of the next era, and news: others replace theirs |
 //!
@@ -72,14 +72,25 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Returns the blocks of 2 × 2 cells of a tile that the robot's centre was in, each by its last
     /// cell: so an odd shift is rounded up, and an even one is exact.
     pub(crate) fn trail(&self, (column, row): (i32, i32)) -> impl Iterator<Item = Cell> {
-        let tile = self.tiles.column(column, row);
-        let rows = tile.map_or(NO_TRAIL, |tile| *tile.visited);
+        let rows = self.trail_rows((column, row));
         let at = move |y: i32, x: usize| Cell {
             x: column * TILE_SIDE + 2 * x as i32 + 1,
             y: row * TILE_SIDE + 2 * y + 1,
         };
         let rows = (0..).zip(rows);
         rows.flat_map(move |(y, word)| ones(word.into()).map(move |x| at(y, x as usize)))
+    }
+
+    /// Returns the trail in a tile: a word is a row of blocks, bit k of it block k.
+    #[must_use]
+    pub fn trail_rows(&self, (column, row): (i32, i32)) -> [u16; 16] {
+        let tile = self.tiles.column(column, row);
+        tile.map_or(NO_TRAIL, |tile| *tile.visited)
+    }
+
+    /// Adds blocks to the trail in a tile. A tile without a page has none.
+    pub fn add_trail(&mut self, tile: (i32, i32), rows: &[u16; 16]) {
+        self.tiles.mark_blocks(tile, rows);
     }
 
     /// Marks a cell of the trail.

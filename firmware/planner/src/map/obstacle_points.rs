@@ -51,9 +51,9 @@ use crate::robot::{LaserMount, RobotShape};
 /// Greatest number of points.
 pub(crate) const MAX_POINTS: usize = 256;
 /// The count of a felt point.
-const FELT: u8 = 0;
+pub(crate) const FELT: u8 = 0;
 /// The count of an unseen point: more than any number of returns.
-const UNSEEN: u8 = u8::MAX;
+pub(crate) const UNSEEN: u8 = u8::MAX;
 /// Distance of an unseen point from the hull, metres. A robot with less room cannot move off
 /// without a touch.
 const UNSEEN_M: f32 = 0.03;
@@ -91,6 +91,21 @@ impl ObstaclePoints {
     #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points
+    }
+
+    /// Returns the points with their counts.
+    pub(crate) fn counted(&self) -> impl Iterator<Item = (Point, u8)> + '_ {
+        self.points
+            .iter()
+            .copied()
+            .zip(self.returns.iter().copied())
+    }
+
+    /// Takes over points with their counts, for a robot at `centre`. They are no trap.
+    pub(crate) fn take_over(&mut self, centre: Point, counted: impl Iterator<Item = (Point, u8)>) {
+        self.clear();
+        self.is_trap = false;
+        counted.for_each(|(point, returns)| self.insert(centre, point, returns));
     }
 
     /// Enters a scan of the level laser, taken at `pose`. `is_robot` tells at which points another

@@ -281,6 +281,17 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
+    /// Marks blocks of the trail in a tile that has a page.
+    pub(super) fn mark_blocks(&mut self, tile: (i32, i32), blocks: &Visited) {
+        let Entry::Page(page) = self.entry(tile.0, tile.1) else {
+            return;
+        };
+        let rows = inside_mut(&mut self.trail, page).into_iter().flatten();
+        for (row, &more) in rows.zip(blocks) {
+            *row |= more;
+        }
+    }
+
     /// Sets where the robot may be. A reset keeps it.
     pub(crate) fn set_fence(&mut self, fence: &Fence) {
         self.fence.clone_from(fence);

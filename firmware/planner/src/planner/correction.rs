@@ -14,7 +14,7 @@
 //! | robot's pose | by the motion; a lost robot searches from there | |
 //! | cells | as told ([`crate::map`]) | in tiles without a known cell |
 //! | evidence | | in listed tiles; elsewhere it stays |
-//! | trail | by shift | where its tile is forgotten, or the scratch memory is full |
+//! | trail | by shift; what is told is added | with its tile, or if the scratch is full |
 //! | arrivals | they are cells | |
 //! | versions for the team | a listed tile is news, of the next era | |
 //! | goals given up, blocked passages, viewpoint | by shift | |
@@ -111,6 +111,9 @@ pub struct CorrectedTile {
     pub shift: (i8, i8),
     /// The low and the high plane of its cells: a word is a row, bit k of it column k.
     pub planes: [[u32; 32]; 2],
+    /// Where the robot's centre was, for a device that has lost it: a word is a row of blocks of
+    /// 2 × 2 cells, bit k of it block k. Zeros tell nothing.
+    pub trail: [u16; 16],
 }
 
 /// How far a correction is.
@@ -267,6 +270,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let in_team = self.team.is_member();
         self.ground
             .replace(&mut self.map, (column, row), &tile.planes, in_team);
+        self.map.add_trail((column, row), &tile.trail);
         Ok(())
     }
 

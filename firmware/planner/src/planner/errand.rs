@@ -8,7 +8,11 @@
 //!
 //! The way there is a path to a chosen goal, as to a frontier: the skeleton, the window's field,
 //! the progress checker, retreats, right of way. The field leads to a coarse cell of 20 cm. So the
-//! robot drives the last metre straight, where that is open, and brakes for the place itself.
+//! robot drives the last metre straight, where that is open, and brakes for the place itself. To a
+//! place behind it that it cannot turn to, it backs.
+//!
+//! It has arrived if it stands within 0.1 m, or within the promised 0.2 m and 10° where nothing
+//! leads nearer.
 //!
 //! *Home* is the pose of the session's first scan, with its heading, or the one that is set: a
 //! device that was reset is told where its session began. It is a pose of the map: a correction
@@ -21,10 +25,12 @@
 //! have an end.
 //! Units: metres, radians, milliseconds, in the map's frame.
 
-use crate::clock::since;
+mod approach;
+
+pub(super) use approach::approach;
+
 use crate::config::Config;
-use crate::drive::{CollisionChecker, Place};
-use crate::geometry::{CELL_M, Cell, MapFromOdom, MapPose, OdomPose, Point, Pose, Twist};
+use crate::geometry::{CELL_M, Cell, MapFromOdom, MapPose, OdomPose, Point, Pose};
 use crate::grid::Shifts;
 use crate::input::Input;
 use crate::math;
@@ -32,32 +38,15 @@ use crate::path::context::STEP_M;
 use crate::path::nearest::Centres;
 use crate::path::search::path_between;
 use crate::path::{PlanningScratch, viewpoint};
-use crate::planner::Output;
 use crate::planner::state::State;
-use crate::planner::steer::{obstruct, steer};
 use crate::planner::workspace::Workspace;
-use crate::roadmap::configuration_space::{Footprint, is_passable};
+use crate::roadmap::configuration_space::Footprint;
 use crate::status::{Errand, Fault, Status};
 
 /// Greatest coordinate of a goal, metres: as of a fence.
 const MOST_M: f32 = 3_200.0;
-/// A robot this near to the goal is there, metres. It may end 0.2 m off: braking ends within a map
-/// cell, and a turn on the spot slips.
-const THERE_M: f32 = 0.1;
-/// A robot that has been there and is no farther off than this stays, metres.
-const STAYS_M: f32 = 0.18;
-/// Distance from which the robot drives straight to the goal, metres.
-const STRAIGHT_M: f32 = 1.0;
-/// A heading this near to the one asked for is that, radians: half of the 10° that are promised.
-const TURNED_RAD: f32 = 0.087;
-/// Turn rates on the spot, radians per second: the most, the least, and the one for each radian
-/// that is left.
-const TURN_RADPS: (f32, f32) = (0.6, 0.12);
-const TURN_GAIN_HZ: f32 = 1.5;
-/// Clearance of the turn, metres: that of a creeping robot.
-const TURN_MARGIN_M: f32 = 0.02;
-/// Time without a turn, because there is no room, after which the errand ends, milliseconds.
-const NO_ROOM_MS: u32 = 10_000;
+/// Where home and goal are promised to be at the end, metres and radians: 0.2 m and 10°.
+const PROMISED: (f32, f32) = (0.2, 0.1745);
 
 /// An order to drive.
 ///
@@ -133,6 +122,17 @@ struct Going {
     straight_rad: Option<f32>,
     /// When the robot last could turn.
     turned_ms: u32,
+}
+
+impl Going {
+    /// Returns true if a robot at `pose` is where the errand promises to take it.
+    fn is_promised(&self, pose: &Pose) -> bool {
+        let (near_m, near_rad) = PROMISED;
+        let off_rad = self
+            .yaw_rad
+            .map_or(0.0, |yaw| math::wrap(yaw - pose.yaw_rad));
+        pose.point().distance_m(self.to) <= near_m && off_rad.abs() <= near_rad
+    }
 }
 
 impl Errands {
@@ -342,11 +342,13 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.ends = false;
     }
 
-    /// Ends the errand: the robot is there, or cannot get there.
+    /// Ends the errand: the robot is there, or cannot get nearer.
     pub(super) fn end_errand(&mut self, arrived: bool) {
-        if let Some(Going { errand, .. }) = self.errands.going() {
+        let MapPose(pose) = self.localiser.to_map(&self.localiser.odom());
+        if let Some(going) = self.errands.going() {
+            let errand = going.errand;
             self.errands.is_going = false;
-            self.status = match arrived {
+            self.status = match arrived || going.is_promised(&pose) {
                 true => Status::Arrived(errand),
                 false => Status::Unreachable(errand),
             };
@@ -390,103 +392,5 @@ pub(super) fn measure_way_home<const TILES: usize, const SLOTS: usize>(
     let path = centres.and_then(|centres| path_between(robot, home, centres, &mut scratch));
     if let Some(path) = path {
         state.errands.measured_m = (path.steps() as f32 * STEP_M, state.errands.driven_m);
-    }
-}
-
-/// Drives the last metre of an errand: straight to the goal, and then to the heading asked for.
-/// Returns `None` as long as the path leads.
-#[inline(never)]
-pub(super) fn approach<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &mut State<TILES, SLOTS>,
-    workspace: &mut Workspace,
-    footprint: &Footprint,
-    input: &Input<'_>,
-) -> Option<Output> {
-    let going = state.errands.going_mut()?;
-    let robot = input.pose.point();
-    let left_m = robot.distance_m(going.to);
-    if !going.is_there {
-        going.turned_ms = input.time_ms;
-    }
-    going.is_there = left_m <= THERE_M || (going.is_there && left_m <= STAYS_M);
-    going.straight_rad = None;
-    if going.is_there {
-        return Some(turn(config, state, input));
-    }
-    let tiles = state.map.tiles();
-    if left_m > STRAIGHT_M || !is_open(robot, going.to, |cell| is_passable(tiles, footprint, cell))
-    {
-        return None;
-    }
-    let lead_rad = math::atan2(going.to.y_m - robot.y_m, going.to.x_m - robot.x_m);
-    going.straight_rad = Some(lead_rad);
-    // The zero command is always safe, so the robot brakes by it.
-    let speed = input.velocity.linear_mps.abs();
-    let stop_m = speed * (config.period_s + 0.5 * speed / config.linear_accel_mps2);
-    if speed > 0.0 && stop_m + 0.5 * THERE_M >= left_m {
-        return Some(Output::going());
-    }
-    Some(steer(config, state, workspace, input, Some(lead_rad)))
-}
-
-/// Returns true if all cells on the way between two points, which are near each other, are open.
-/// The robot may stand nearer to an obstacle than it plans for: its own cell does not count.
-fn is_open(from: Point, to: Point, passable: impl Fn(Cell) -> bool) -> bool {
-    let parts = math::floor(2.0 * from.distance_m(to) / CELL_M) + 1;
-    (1..=parts).all(|k| {
-        let part = k as f32 / parts as f32;
-        let at = Point {
-            x_m: from.x_m + part * (to.x_m - from.x_m),
-            y_m: from.y_m + part * (to.y_m - from.y_m),
-        };
-        at.cell() == from.cell() || passable(at.cell())
-    })
-}
-
-/// Turns to the heading that the errand asks for, on the side where there is room, and ends the
-/// errand once the robot stands.
-fn turn<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &mut State<TILES, SLOTS>,
-    input: &Input<'_>,
-) -> Output {
-    let Some(going) = state.errands.going() else {
-        return Output::going();
-    };
-    let wanted = going.yaw_rad.unwrap_or(input.pose.yaw_rad);
-    let error = math::wrap(wanted - input.pose.yaw_rad);
-    if error.abs() <= TURNED_RAD {
-        let stands = input.velocity.linear_mps.abs() < 0.05;
-        if stands && input.velocity.angular_radps.abs() < 0.1 {
-            state.end_errand(true);
-        }
-        return Output::going();
-    }
-    let mut checker = CollisionChecker::empty(&config.robot);
-    obstruct(&mut checker, state, config, input);
-    let (most, least) = TURN_RADPS;
-    let rate = (TURN_GAIN_HZ * error.abs()).clamp(least, most);
-    let sides = [rate.min(most) * error.signum(), -most * error.signum()];
-    // All the way round, or the robot would turn to and fro before what is in the way.
-    let turns = [error, error - math::PI * 2.0 * error.signum()];
-    let mut sides = sides.into_iter().zip(turns);
-    let found = sides.find_map(|(angular_radps, turn_rad)| {
-        let twist = Twist {
-            linear_mps: 0.0,
-            angular_radps,
-        };
-        let is_free = checker.is_arc_clear(Place::default(), 0.0, turn_rad, TURN_MARGIN_M)
-            && checker.admits(twist, input.velocity, config, TURN_MARGIN_M);
-        is_free.then_some(twist)
-    });
-    match (found, state.errands.going_mut()) {
-        (Some(_), Some(going)) => going.turned_ms = input.time_ms,
-        _ if since(input.time_ms, going.turned_ms) > NO_ROOM_MS => state.end_errand(false),
-        _ => {}
-    }
-    Output {
-        velocity: found.unwrap_or_default(),
-        ..Output::going()
     }
 }

@@ -119,6 +119,22 @@ impl<const TILES: usize> GroundModel<TILES> {
         }
     }
 
+    /// Returns the obstacle points; `None` on uneven ground, which has none.
+    pub(super) const fn points(&self) -> Option<&ObstaclePoints> {
+        match self {
+            Self::Flat(points) => Some(points),
+            Self::Uneven(_) => None,
+        }
+    }
+
+    /// Takes over obstacle points with their counts, for a robot at a place of the odometry's
+    /// frame.
+    pub(super) fn take_over(&mut self, centre: Point, counted: impl Iterator<Item = (Point, u8)>) {
+        if let Self::Flat(points) = self {
+            points.take_over(centre, counted);
+        }
+    }
+
     /// Notes that nothing has been seen around a robot that starts at `odom`.
     pub(super) fn surround(&mut self, odom: &OdomPose, robot: &RobotShape) {
         if let Self::Flat(points) = self {

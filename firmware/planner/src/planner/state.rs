@@ -68,6 +68,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     pub(super) correcting: Correcting,
     /// Where the robot is ordered to go.
     pub(super) errands: Errands,
+    /// The session was told what lies around the robot.
+    pub(super) is_recalled: bool,
 }
 
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
@@ -113,6 +115,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             events: Events::NONE,
             correcting: Correcting::new(),
             errands: Errands::new(),
+            is_recalled: false,
         }
     }
 
@@ -140,6 +143,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.events = Events::NONE;
         self.correcting = Correcting::new();
         self.errands = Errands::new();
+        self.is_recalled = false;
     }
 
     /// Returns the planner's status after the last step.

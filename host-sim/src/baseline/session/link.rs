@@ -82,7 +82,7 @@ impl<S: Strategy> Link for Session<S> {
             Request::Frontiers => Reply::Frontiers(self.dropped()),
             Request::Path { .. } => Reply::Path(Path::default()),
             Request::Hear(_) | Request::Say => return Err(refused(Refusal::NoTeam)),
-            Request::Correct(_) | Request::Tiles(_) => {
+            Request::Correct(_) | Request::Tiles(_) | Request::Recall(_) => {
                 return Err(LinkError::Refused("a baseline corrects no map".into()));
             }
         })

@@ -1,7 +1,12 @@
 //! Corrections of a hostile host: any epochs, motions, tiles, shifts and cells; in order, and lost,
 //! doubled or cut short.
 
-use fieldline_protocol::message::{Correct, CorrectedTile, CorrectedTiles, MOST_CORRECTED, Motion};
+use fieldline_protocol::message::{
+    Correct, CorrectedTile, CorrectedTiles, MOST_CORRECTED, Motion, RECALLED_POINTS,
+    RECALLED_TRACK, Recall, RecalledPoint,
+};
+
+use fixed::types::I16F16;
 
 use super::packets::cells;
 use super::quantities::{angle, wide, wide_within};
@@ -44,7 +49,42 @@ impl Corrections {
             _ => tiles,
         };
         asks.insert(0, Ask::Correct(Box::new(self.opening(choices, count))));
+        if choices.once_in(4) {
+            asks.push(Ask::Recall(Box::new(self.recall(choices))));
+        }
         asks
+    }
+
+    /// Draws what lies around a robot: any points and any track.
+    fn recall(self, choices: &mut impl Choices) -> Recall {
+        let mut recall = Recall {
+            epoch: self.epoch,
+            ..Recall::default()
+        };
+        let is_far = choices.once_in(8);
+        recall.origin = (place(choices, is_far), place(choices, is_far));
+        for _ in 0..choices.below(RECALLED_POINTS as u64 + 1) {
+            let mut near = || choices.between(-1_500, 1_500) as i16;
+            let point = RecalledPoint {
+                x_mm: near(),
+                y_mm: near(),
+                returns: choices.pick(&[1, 2, 8, 8, 8, 255, 255, 9, 0]),
+            };
+            // There is room for as many as are drawn.
+            let _ = recall.points.push(point);
+        }
+        if !choices.once_in(4) {
+            recall.track_end = Some(Motion {
+                x: place(choices, is_far),
+                y: place(choices, is_far),
+                yaw: angle(choices),
+            });
+        }
+        for _ in 0..choices.below(RECALLED_TRACK as u64 + 1) {
+            let mut by = || choices.bits(8) as i8;
+            let _ = recall.track.push([by(), by(), by()]);
+        }
+        recall
     }
 
     fn opening(self, choices: &mut impl Choices, tiles: u16) -> Correct {
@@ -100,10 +140,20 @@ impl Corrections {
                     y,
                     shift,
                     bytes: bytes.len() as u16,
+                    trail: choices.once_in(8),
                 };
                 let _ = part.tiles.push(tile);
             }
         }
         part
+    }
+}
+
+/// Draws a coordinate: near the robot's start, or anything.
+fn place(choices: &mut impl Choices, is_far: bool) -> I16F16 {
+    let (most, _) = MOVES;
+    match is_far {
+        true => wide(choices),
+        false => wide_within(choices, -most, most),
     }
 }

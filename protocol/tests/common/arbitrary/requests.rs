@@ -2,7 +2,8 @@
 
 use fieldline_protocol::message::{
     self, Budget, Control, Correct, CorrectedTile, CorrectedTiles, Fence, FencePolygon, Hull,
-    Laser, LoopLimits, Motion, Observation, Order, Preference, Request, Scan, Start, UnevenGround,
+    Laser, LoopLimits, Motion, Observation, Order, Preference, Recall, RecalledPoint, Request,
+    Scan, Start, UnevenGround,
 };
 use proptest::prelude::*;
 
@@ -202,11 +203,13 @@ fn correct() -> impl Strategy<Value = Correct> {
 }
 
 fn corrected_tiles() -> impl Strategy<Value = CorrectedTiles> {
-    let tile = any::<(i16, i16, (i8, i8), u16)>().prop_map(|(x, y, shift, bytes)| CorrectedTile {
+    let tile = any::<(i16, i16, (i8, i8), u16, bool)>();
+    let tile = tile.prop_map(|(x, y, shift, bytes, trail)| CorrectedTile {
         x,
         y,
         shift,
         bytes,
+        trail,
     });
     let head = any::<(u16, u16, bool)>();
     (head, list(tile), list(any::<u8>())).prop_map(|((epoch, first, last), tiles, cells)| {
@@ -218,6 +221,25 @@ fn corrected_tiles() -> impl Strategy<Value = CorrectedTiles> {
             cells,
         }
     })
+}
+
+fn recall() -> impl Strategy<Value = Recall> {
+    let point = any::<(i16, i16, u8)>().prop_map(|(x_mm, y_mm, returns)| RecalledPoint {
+        x_mm,
+        y_mm,
+        returns,
+    });
+    let ends = [long(), long(), long()].prop_map(|[x, y, yaw]| Motion { x, y, yaw });
+    let head = (any::<u16>(), long(), long(), proptest::option::of(ends));
+    (head, list(point), list(any::<[i8; 3]>())).prop_map(
+        |((epoch, x, y, track_end), points, track)| Recall {
+            epoch,
+            origin: (x, y),
+            points,
+            track_end,
+            track,
+        },
+    )
 }
 
 /// Any request except a hello of another version.
@@ -234,5 +256,6 @@ pub(crate) fn request() -> impl Strategy<Value = Request> {
         Just(Request::Say),
         correct().prop_map(Request::Correct),
         corrected_tiles().prop_map(Request::Tiles),
+        recall().prop_map(Request::Recall),
     ]
 }

@@ -1,8 +1,8 @@
 //! Corrections of the map: parts that come late, twice or not at all.
 
 use fieldline_protocol::message::{
-    Control, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress, Refusal, Status, TeamTile,
-    Twist,
+    Control, Correct, CorrectedTile, CorrectedTiles, CorrectionProgress, Recall, RecalledPoint,
+    Refusal, Status, TRAIL_BYTES, TeamTile, Twist,
 };
 
 use super::{Bench, Pilot, observation, started};
@@ -22,6 +22,7 @@ fn part(epoch: u16, numbers: core::ops::Range<u16>, last: bool) -> CorrectedTile
             y: k as i16,
             shift: (1, 1),
             bytes: bytes.len() as u16,
+            trail: false,
         };
         part.tiles.push(tile).expect("room");
         part.cells.extend_from_slice(&bytes).expect("room");
@@ -124,4 +125,51 @@ fn a_newer_correction_takes_the_place_of_an_open_one() {
     pilot.control(&mut bench.memory(), &start).expect("valid");
     let command = pilot.observe(&mut bench.memory(), &observation(400), &mut ());
     assert_eq!(command.map(|it| it.map_epoch), Ok(0));
+}
+
+#[test]
+fn a_recall_is_taken_once_the_map_is_back_and_before_the_first_scan() {
+    let (mut pilot, mut bench) = started();
+    let recall = |epoch| Recall {
+        epoch,
+        points: [RecalledPoint {
+            x_mm: 0,
+            y_mm: 400,
+            returns: 8,
+        }]
+        .into_iter()
+        .collect(),
+        ..Recall::default()
+    };
+    let refused = pilot.recall(&mut bench.memory(), &recall(1));
+    assert_eq!(refused, Err(Refusal::NoCorrection));
+    open(&mut pilot, &mut bench, 1, 1);
+    let refused = pilot.recall(&mut bench.memory(), &recall(1));
+    assert_eq!(refused, Err(Refusal::NoCorrection), "it is open");
+    let mut trailed = part(1, 0..1, true);
+    trailed.tiles[0].trail = true;
+    let refused = pilot.tiles(&mut bench.memory(), &trailed);
+    assert_eq!(refused, Err(Refusal::BadTile), "it has no trail");
+    trailed
+        .cells
+        .extend_from_slice(&[1; TRAIL_BYTES])
+        .expect("room");
+    let whole = pilot.tiles(&mut bench.memory(), &trailed);
+    assert_eq!(whole, Ok(progress(1, 1, true)));
+    let mut absurd = recall(1);
+    absurd.points[0].returns = 0;
+    let refused = pilot.recall(&mut bench.memory(), &absurd);
+    assert_eq!(refused, Err(Refusal::BadCorrection));
+    for _ in 0..2 {
+        let taken = pilot.recall(&mut bench.memory(), &recall(1));
+        assert_eq!(taken, Ok(progress(1, 1, true)));
+    }
+    let command = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
+    assert_eq!(command.map(|it| it.status), Ok(Status::Exploring));
+    let refused = pilot.recall(&mut bench.memory(), &recall(1));
+    assert_eq!(
+        refused,
+        Err(Refusal::NoCorrection),
+        "it has seen for itself"
+    );
 }

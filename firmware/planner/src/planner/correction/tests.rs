@@ -151,6 +151,7 @@ fn moved() -> CorrectedTile {
         tile: (0, 0),
         shift: (3, 1),
         planes: planes(MOVED, AT.x),
+        trail: [0; 16],
     }
 }
 
