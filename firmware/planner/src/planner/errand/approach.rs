@@ -129,7 +129,9 @@ fn is_open(from: Point, to: Point, passable: impl Fn(Cell) -> bool) -> bool {
 }
 
 /// Turns to the heading that the errand asks for, on the side where there is room, and ends the
-/// errand once the robot stands.
+/// errand once the robot stands. It is not inlined: [`back`] needs room for obstacles too, and the
+/// two would lie on the stack together.
+#[inline(never)]
 fn turn<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
