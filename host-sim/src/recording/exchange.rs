@@ -71,8 +71,8 @@ pub enum ReadError {
     NoSession,
     /// Its requests are those of another version.
     #[error(
-        "its requests have the schema {0}, and those of this program {SCHEMA:#010x}; replay it with \
-         the version that recorded it"
+        "its requests have the schema {0}, and those of this program {SCHEMA:#010x}; replay it \
+         with the version that recorded it"
     )]
     Schema(String),
     /// A message is none that this program knows.

@@ -16,7 +16,8 @@
 //! | `/map` | `nav_msgs/OccupancyGrid` | if it changed, each 5 s, and last |
 //! | `/field` | `nav_msgs/OccupancyGrid`, 100 at the goal | each second |
 //! | `/plan` | `nav_msgs/Path` | each second, if it changed |
-//! | `/status`, `/rosout` | `std_msgs/String`, `rcl_interfaces/Log` | if it changed; the mission's log |
+//! | `/status` | `std_msgs/String` | if it changed |
+//! | `/rosout` | `rcl_interfaces/Log` | the mission's log |
 //! | `/fieldline/request`, `/fieldline/reply` | the session (`exchange.rs`) | each |
 //!
 //! Invariants: a look changes nothing, so a recorded run has the digest of the same run without.

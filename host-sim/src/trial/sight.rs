@@ -66,8 +66,8 @@ impl Sight<'_> {
         inside.or_else(|| Some(self.mirror?.map().tiles().edits()))
     }
 
-    /// Returns the map's tiles: the device's own, if it lives in this process, else the host's copy.
-    /// A cell has two bits, least x and y first, as [`Inside::cells`] tells them.
+    /// Returns the map's tiles: the device's own, if it lives in this process, else the host's
+    /// copy. A cell has two bits, least x and y first, as [`Inside::cells`] tells them.
     #[must_use]
     pub fn map_tiles(&self) -> BTreeMap<Key, [u8; 256]> {
         match (self.inside(), self.mirror) {
