@@ -42,10 +42,31 @@ fn start(folder: &Path, world: &str, id: usize, spec: &str) -> Child {
             &id.to_string(),
         ])
         .args(["--out", &format!("robot-{id}")])
+        .args(recording(id))
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
         .expect("the program starts")
+}
+
+/// Two of the robots are recorded; a file of the one that is killed would be in its way.
+fn recording(id: usize) -> Vec<String> {
+    if cfg!(feature = "record") && id < 2 {
+        return vec!["--record".into(), format!("robot-{id}.mcap")];
+    }
+    Vec::new()
+}
+
+/// A device does again what this robot's did, with all that the robot heard and said.
+fn replays(folder: &Path, id: usize) {
+    let Some(file) = recording(id).pop() else {
+        return;
+    };
+    let mut replay = Command::new(env!("CARGO_BIN_EXE_host-sim"));
+    replay.current_dir(folder).args(["replay", &file, "--json"]);
+    let output = replay.output().expect("the program starts");
+    let told = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{told}");
 }
 
 fn report(child: Child) -> Value {
@@ -100,6 +121,9 @@ fn three_processes_are_a_team_and_one_is_killed_and_started_again() {
             0,
             "{report}"
         );
+    }
+    for id in [0, 1] {
+        replays(folder, id);
     }
     assert!(count(&reports[0], "unauthentic") > 100, "{}", reports[0]);
     assert!(count(&reports[0], "malformed") > 100, "{}", reports[0]);

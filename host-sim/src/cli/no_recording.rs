@@ -23,7 +23,7 @@ impl Recorder {
         match self.0 {}
     }
 
-    pub(super) fn over<T>(&self, _: &mut dyn Link, _: impl FnOnce(&mut dyn Link) -> T) -> T {
+    pub(super) fn tap(&self, _: Box<dyn Link>) -> Box<dyn Link> {
         match self.0 {}
     }
 

@@ -99,15 +99,15 @@ impl Prepared {
             let answer = await_board(planner.as_mut(), device, args.wait);
             answer.map_err(|error| anyhow!("--link {link}: {error}"))?;
         }
+        // Next to the device: what a team says to it is recorded too.
+        if let Some(recorder) = recorder {
+            planner = recorder.tap(planner);
+        }
         let (mut planner, network) = join(args, planner)?;
         let planner = planner.as_mut();
-        let run = |link: &mut dyn Link| match keeping {
-            Some(keeping) => mission::explore_kept(mission, world, link, watch, keeping),
-            None => mission::explore(mission, world, link, watch),
-        };
-        let result = match recorder {
-            Some(recorder) => recorder.over(planner, run),
-            None => run(planner),
+        let result = match keeping {
+            Some(keeping) => mission::explore_kept(mission, world, planner, watch, keeping),
+            None => mission::explore(mission, world, planner, watch),
         };
         let (mut report, record) = match result {
             Err(MissionError::Link(error)) => bail!("--link {link}: {error}"),

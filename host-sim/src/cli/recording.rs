@@ -44,9 +44,9 @@ impl Recorder {
         self.recording.borrow_mut().see(sight);
     }
 
-    /// Runs something over a link that is recorded.
-    pub(super) fn over<T>(&self, link: &mut dyn Link, run: impl FnOnce(&mut dyn Link) -> T) -> T {
-        run(&mut Tap::new(link, Rc::clone(&self.recording)))
+    /// Records what goes over a link.
+    pub(super) fn tap(&self, link: Box<dyn Link>) -> Box<dyn Link> {
+        Box::new(Tap::new(link, Rc::clone(&self.recording)))
     }
 
     /// Ends the file with the report, and says if it is not whole.

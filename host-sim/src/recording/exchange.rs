@@ -2,13 +2,13 @@
 //! again.
 //!
 //! ```text
-//! /fieldline/request   a request as postcard: every bit of it
-//! /fieldline/reply     its answer as JSON: {"reply":{"Command":{…}}}, {"refused":"…"}
+//! /fieldline/request   a request as postcard
+//! /fieldline/reply     its answer as postcard: the reply, or why there is none (Told)
 //! ```
 //!
-//! Each request is followed by its answer. A file that was cut has them up to the cut. The decimals
-//! of JSON would not do for requests: of the 65,536 fractions of a quantity with 16 bits, `fixed`
-//! prints eight so that they are read one bit off.
+//! Each request is followed by its answer. A file that was cut has them up to the cut. Postcard
+//! keeps every bit. The decimals of JSON would not: of the 65,536 fractions of a quantity with 16
+//! bits, `fixed` prints eight so that they are read one bit off.
 
 use std::path::Path;
 
@@ -28,7 +28,6 @@ const MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
 /// An answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
 pub enum Told {
     /// The device's.
     Reply(Box<Reply>),
@@ -131,7 +130,7 @@ pub fn read(path: &Path) -> Result<Exchanges, ReadError> {
         } else if topic == REPLIES
             && let Some((time_ms, request)) = open.take()
         {
-            let told = serde_json::from_slice(&message.data);
+            let told = postcard::from_bytes(&message.data);
             let told = told.map_err(|it| wrong(it.to_string()))?;
             exchanges.list.push(Exchange {
                 time_ms,
@@ -234,21 +233,20 @@ pub fn replay(exchanges: &Exchanges, link: &mut dyn Link) -> Result<Replayed, Li
 
 #[cfg(test)]
 mod tests {
-    use fieldline_protocol::message::{Observation, Pose, Reply, Request, Status};
+    use fieldline_protocol::message::{Command, Observation, Pose, Reply, Request, Status};
     use fixed::types::I16F16;
 
     use super::{Exchange, ReadError, Told, read};
     use crate::recording::Recording;
     use crate::report::MadeBy;
 
-    /// Records these requests; returns what is read of the file.
-    fn through_a_file(requests: &[Request]) -> Vec<Exchange> {
+    /// Records these exchanges; returns what is read of the file.
+    fn through_a_file(exchanges: &[Exchange]) -> Vec<Exchange> {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("run.mcap");
         let mut recording = Recording::create(&path, &MadeBy::default()).expect("a file");
-        for request in requests {
-            let told = Told::Reply(Box::new(Reply::Control(Status::Exploring)));
-            recording.exchange(request, &told);
+        for it in exchanges {
+            recording.exchange(&it.request, &it.told);
         }
         assert_eq!(recording.end(None), None);
         let read = read(&path).expect("a recording");
@@ -257,24 +255,42 @@ mod tests {
     }
 
     #[test]
-    fn every_bit_of_a_request_is_kept() {
+    fn every_bit_of_a_request_and_of_its_answer_is_kept() {
         // Among these is 5.0999908, which `fixed` prints as 5.1.
         let fractions = (0..65_536).step_by(7).chain([6_553]);
-        let requests: Vec<Request> = fractions
+        let mut exchanges: Vec<Exchange> = fractions
             .map(|fraction| {
+                let number = I16F16::from_bits(5 << 16 | fraction);
                 let pose = Pose {
-                    x: I16F16::from_bits(5 << 16 | fraction),
+                    x: number,
                     ..Pose::default()
                 };
-                Request::Observation(Observation {
-                    pose,
-                    ..Observation::default()
-                })
+                let command = Command {
+                    heading: number,
+                    ..Command::default()
+                };
+                Exchange {
+                    time_ms: 0,
+                    request: Request::Observation(Observation {
+                        pose,
+                        ..Observation::default()
+                    }),
+                    told: Told::Reply(Box::new(Reply::Command(command))),
+                }
             })
             .collect();
-        let kept = through_a_file(&requests).into_iter();
-        let kept: Vec<Request> = kept.map(|it| it.request).collect();
-        assert!(kept == requests);
+        for told in [
+            Told::Reply(Box::new(Reply::Control(Status::Exploring))),
+            Told::Refused("no session".into()),
+            Told::Failed("silence".into()),
+        ] {
+            exchanges.push(Exchange {
+                time_ms: 0,
+                request: Request::Say,
+                told,
+            });
+        }
+        assert!(through_a_file(&exchanges) == exchanges);
     }
 
     #[test]

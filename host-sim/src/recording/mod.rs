@@ -19,6 +19,7 @@
 //! | `/status` | `std_msgs/String` | if it changed |
 //! | `/rosout` | `rcl_interfaces/Log` | the mission's log |
 //! | `/fieldline/request`, `/fieldline/reply` | the session (`exchange.rs`) | each |
+//! | `/fieldline/step` | the answer to an observation as JSON, for people | each |
 //!
 //! Invariants: a look changes nothing, so a recorded run has the digest of the same run without.
 //! Each [`CHUNK_MS`] of simulated time a chunk is written whole, so a file that is cut has all
@@ -38,7 +39,7 @@ use std::io::BufWriter;
 use std::path::Path;
 
 use fieldline_protocol::SCHEMA;
-use fieldline_protocol::message::Request;
+use fieldline_protocol::message::{Reply, Request};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, Compression, WriteOptions, Writer};
 
@@ -57,6 +58,8 @@ const LEVEL: u32 = 9;
 /// Topics of the session.
 const REQUESTS: &str = "/fieldline/request";
 const REPLIES: &str = "/fieldline/reply";
+/// Topic of the answers to observations, for people.
+const STEPS: &str = "/fieldline/step";
 /// Name of the metadata that tells what made the run.
 const MADE_BY: &str = "fieldline";
 /// Key in it of the schema of the requests.
@@ -160,9 +163,15 @@ impl Recording {
             self.set_time(observation.time_ms);
         }
         // Everything that is asked and told can be written.
-        let (request, told) = (postcard::to_allocvec(request), serde_json::to_vec(told));
-        self.plain(REQUESTS, "postcard", &request.unwrap_or_default());
-        self.plain(REPLIES, "json", &told.unwrap_or_default());
+        let (asked, answer) = (postcard::to_allocvec(request), postcard::to_allocvec(told));
+        self.plain(REQUESTS, "postcard", &asked.unwrap_or_default());
+        self.plain(REPLIES, "postcard", &answer.unwrap_or_default());
+        if let Told::Reply(reply) = told
+            && let Reply::Command(command) = reply.as_ref()
+        {
+            let step = serde_json::to_vec(command);
+            self.plain(STEPS, "json", &step.unwrap_or_default());
+        }
     }
 
     /// Records a message of ROS 2.

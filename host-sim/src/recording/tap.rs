@@ -10,15 +10,16 @@ use super::exchange::Told;
 use crate::link::{End, Link, LinkError};
 
 /// A link that is recorded.
-#[expect(missing_debug_implementations, reason = "a borrowed trait object")]
-pub struct Tap<'l> {
-    link: &'l mut dyn Link,
+#[expect(missing_debug_implementations, reason = "a boxed trait object")]
+pub struct Tap {
+    link: Box<dyn Link>,
     recording: Rc<RefCell<Recording>>,
 }
 
-impl<'l> Tap<'l> {
+impl Tap {
     /// Records what goes over a link.
-    pub fn new(link: &'l mut dyn Link, recording: Rc<RefCell<Recording>>) -> Self {
+    #[must_use]
+    pub fn new(link: Box<dyn Link>, recording: Rc<RefCell<Recording>>) -> Self {
         Self { link, recording }
     }
 }
@@ -41,7 +42,7 @@ const fn changes(request: &Request) -> bool {
     }
 }
 
-impl Link for Tap<'_> {
+impl Link for Tap {
     fn ask(&mut self, request: &Request) -> Result<Reply, LinkError> {
         let answer = self.link.ask(request);
         if changes(request) {

@@ -78,6 +78,7 @@ fn a_recorded_run_is_the_same_and_a_device_does_it_again() {
         "/true_pose",
         "/cmd_vel",
         "/coverage",
+        "/fieldline/step",
     ] {
         assert_eq!(topics[topic], steps, "{topic}");
     }
