@@ -50,13 +50,14 @@ pub fn assert_clean(totals: &Totals) {
     );
 }
 
-/// Runs sessions in this process, and asserts that nothing is found and that the sessions are of
-/// use: most requests are steps, and some are refused.
+/// Runs a session of each generator and seed in this process, and asserts that nothing is found and
+/// that the sessions are of use: most requests are steps, and some are refused.
 ///
 /// # Panics
 /// If not.
-pub fn check_in_process(seeds: core::ops::Range<u64>) {
+pub fn check_in_process(generators: &[Generator], seeds: core::ops::Range<u64>) {
     let totals = run(&Campaign {
+        generators: generators.to_vec(),
         seeds,
         threads: threads(),
         ..Campaign::default()
