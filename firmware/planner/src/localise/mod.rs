@@ -42,7 +42,7 @@ mod symmetric;
 #[cfg(test)]
 mod tests;
 
-use crate::config::Config;
+use crate::config::{Config, LocaliseTuning};
 use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
 use crate::input::Input;
 use crate::map::neighbourhood::Neighbourhood;
@@ -86,6 +86,8 @@ pub struct Localiser {
     contradicted: u8,
     /// Steps for which only a scan that refutes the place is doubted.
     trusted_steps: u8,
+    /// Steps for which no scan is doubted.
+    unjudged_steps: u8,
     /// What the next step goes on from.
     footing: Footing,
 }
@@ -118,6 +120,7 @@ impl Localiser {
             rise_m: 0.0,
             contradicted: 0,
             trusted_steps: 0,
+            unjudged_steps: 0,
             footing: Footing::Moved(Motion::NONE),
         }
     }
@@ -183,6 +186,12 @@ impl Localiser {
         if self.is_lost() {
             self.footing = Footing::Lost(Search::new());
         }
+    }
+
+    /// Takes the robot's place for right, whatever scans say, until they are in the map again: the
+    /// map was made to forget what stands. A lost robot has no place to take.
+    pub(crate) const fn expect_contradiction(&mut self, tuning: &LocaliseTuning) {
+        self.unjudged_steps = tuning.trusted_steps;
     }
 
     /// Takes odometry and scans of a step. Returns the pose in the map.
@@ -288,8 +297,9 @@ impl Localiser {
         }
         let predicted = &predicted;
         self.trusted_steps = self.trusted_steps.saturating_sub(1);
+        self.unjudged_steps = self.unjudged_steps.saturating_sub(1);
         // A beam may end on ground that is free, so nothing contradicts the map there.
-        let is_doubtful = if is_uneven {
+        let is_doubtful = if is_uneven || self.unjudged_steps > 0 {
             false
         } else if self.trusted_steps > 0 {
             found.agreement.is_refuted(tuning)

@@ -57,6 +57,8 @@ fn looks_again<const TILES: usize, const SLOTS: usize>(
     let begins = frontier.may_look_again(known_cells, time_ms);
     if begins {
         state.map.forget_arrivals(config, robot);
+        let tuning = &config.tuning.localise;
+        state.localiser.expect_contradiction(tuning);
         frontier.look_again();
         state.forgot_arrivals = true;
     }

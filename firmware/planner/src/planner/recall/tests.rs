@@ -161,6 +161,7 @@ fn a_recall_that_comes_too_early_too_late_or_is_absurd_changes_nothing() {
 }
 
 /// The robot drives as it is told, beside a wall to the right.
+#[cfg(feature = "internals")]
 #[test]
 fn the_hosts_copy_tells_what_the_device_knows() {
     let config = config();
