@@ -103,7 +103,8 @@ impl ConfigBuilder {
         self
     }
 
-    /// Corrects the odometry by the level scan. Default: the odometry is taken for the pose.
+    /// Corrects the odometry by the level scan, or takes it for the pose. Default: true, because
+    /// every odometry drifts.
     #[must_use]
     pub const fn localise(mut self, localise: bool) -> Self {
         self.config.localise = localise;

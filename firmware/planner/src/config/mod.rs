@@ -112,7 +112,7 @@ pub struct Config {
     pub(crate) fence: Fence,
     /// What the robot may drive before it must be home. Default: anything.
     pub(crate) budget: Budget,
-    /// The planner corrects odometry by the level scan. Default: false.
+    /// The planner corrects odometry by the level scan. Default: true.
     pub(crate) localise: bool,
     /// The planner only localises and maps. Default: false.
     pub(crate) survey: bool,
@@ -162,15 +162,17 @@ impl Config {
                 range_m: None,
                 time_s: None,
             },
-            localise: false,
+            localise: true,
             survey: false,
         }
     }
 
-    /// Returns the defaults for a Pioneer 3-AT with the given lasers, unchecked.
+    /// Returns the defaults for a Pioneer 3-AT with the given lasers and exact odometry, unchecked.
     #[cfg(test)]
     pub(crate) const fn pioneer_3at(lasers: Vec<LaserMount, 2>) -> Self {
-        Self::new(RobotShape::PIONEER_3AT, lasers)
+        let mut config = Self::new(RobotShape::PIONEER_3AT, lasers);
+        config.localise = false;
+        config
     }
 
     /// Returns the strategy.

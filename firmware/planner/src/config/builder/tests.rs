@@ -27,6 +27,9 @@ fn refused(builder: ConfigBuilder) -> Option<Parameter> {
 #[test]
 fn the_defaults_are_the_pioneer() {
     let built = flat().build().expect("the defaults are valid");
+    assert!(built.localises(), "every odometry drifts");
+    let built = flat().localise(false).build();
+    let built = built.expect("the defaults are valid");
     let lasers = built.lasers.clone();
     let pioneer = Config::pioneer_3at(lasers);
     assert_eq!(std::format!("{built:?}"), std::format!("{pioneer:?}"));
