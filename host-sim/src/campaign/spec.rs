@@ -29,7 +29,7 @@ use super::{CampaignError, columns, numbers};
 use crate::near;
 
 /// Options of `explore` that a campaign has keys for, or that make no sense in one.
-const NOT_OPTIONS: [(&str, &str); 12] = [
+const NOT_OPTIONS: [(&str, &str); 13] = [
     ("strategy", "list `strategies`"),
     ("seed", "list `seeds`"),
     ("start", "list `starts`"),
@@ -40,6 +40,10 @@ const NOT_OPTIONS: [(&str, &str); 12] = [
     ("realtime", "leave it out; trials run as fast as they can"),
     ("live", "leave it out; explore shows a run of its own"),
     ("team", "leave it out; a trial has one robot"),
+    (
+        "film",
+        "leave it out; a campaign keeps no pictures of a run",
+    ),
     (
         "snapshots",
         "leave it out; a campaign keeps no pictures of a run",

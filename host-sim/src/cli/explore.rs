@@ -7,6 +7,7 @@ use std::rc::Rc;
 use anyhow::{Result, bail};
 
 use host_sim::live::Live;
+use host_sim::picture::film::Film;
 use host_sim::report::{MadeBy, Report, folder};
 use host_sim::state::{self, State};
 use host_sim::trial::Record;
@@ -21,7 +22,7 @@ use super::progress::{Interrupt, Onlooker};
 use super::recording::Recorder;
 use super::resume;
 use super::strategies::{self, FRONTIER, TERRAIN};
-use super::{live, made_by, note, say};
+use super::{film, live, made_by, note, say};
 
 /// A run to make.
 pub(super) struct Run {
@@ -37,6 +38,7 @@ pub(super) struct Run {
 pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     let prepared = Prepared::new(&without_alias(args)?)?;
     let runs = runs(&prepared)?;
+    let film = film::film(&prepared.args)?;
     for run in &runs {
         folder::prepare(&run.folder)?;
         resume::clear(run)?;
@@ -47,7 +49,7 @@ pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
     let live = live.transpose()?;
     let mut all_explored = true;
     for run in &runs {
-        all_explored &= explore(&prepared, run, &interrupt, live.as_ref())?;
+        all_explored &= explore(&prepared, run, &interrupt, (live.as_ref(), film.as_ref()))?;
         if interrupt.pressed() {
             break;
         }
@@ -170,7 +172,7 @@ fn explore(
     prepared: &Prepared,
     run: &Run,
     interrupt: &Interrupt,
-    live: Option<&Live>,
+    (live, film): (Option<&Live>, Option<&Film>),
 ) -> Result<bool> {
     let args = &prepared.args;
     let name = run.world.name();
@@ -216,8 +218,13 @@ fn explore(
     report.made_by = Some(run.made_by.clone());
     let album = Album::new(&run.world, &report, &record);
     folder::write(&run.folder, &report, &record, &album.end())?;
-    folder::write_snapshots(&run.folder, album.during())?;
-    folder::write_corrections(&run.folder, album.corrections())?;
+    match film {
+        Some(film) => film::make(film, args, &album)?,
+        None => {
+            folder::write_snapshots(&run.folder, album.during())?;
+            folder::write_corrections(&run.folder, album.corrections())?;
+        }
+    }
     print(args, &report, &record, &run.folder)?;
     Ok(report.explored())
 }

@@ -14,7 +14,7 @@ use host_sim::trial::space::SpaceMission;
 use host_sim::trial::uneven;
 
 use super::args::{ExploreArgs, GroundArg, OdometryArg, SwitchArg, ThenArg};
-use super::strategies;
+use super::{film, strategies};
 
 /// Returns the parameters of uneven ground; `None` on flat ground.
 fn uneven_ground(args: &ExploreArgs) -> Result<Option<UnevenGround>> {
@@ -149,7 +149,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         relaxation: relaxation(args),
         impatience_s: args.tdbvp_impatience.map_or(IMPATIENCE_S, |it| it.0),
         check_field: args.check_field,
-        snapshots: args.snapshots,
+        snapshots: film::frames(args),
         resumes: args.resume.is_some(),
         slam: args.slam,
         particles: args.particles,

@@ -11,6 +11,7 @@ mod bringup;
 mod campaign;
 mod common;
 mod explore;
+mod film;
 mod live;
 mod made_by;
 mod mission;

@@ -1,7 +1,7 @@
 //! The pictures of a run: one of its end, and a series during it.
 
 use fieldline_protocol::message::ResidualReason;
-use host_sim::picture::{Ground, Scene, run_png};
+use host_sim::picture::{Ground, Pixels, Scene, run_pixels, run_png};
 use host_sim::report::tum::Stamped;
 use host_sim::report::{Report, ResidualFrontier};
 use host_sim::trial::snapshot::Snapshot;
@@ -34,6 +34,21 @@ impl<'a> Album<'a> {
 
     /// Draws `run.png`.
     pub(super) fn end(&self) -> Vec<u8> {
+        self.show_end(run_png)
+    }
+
+    /// Draws the frames of a film: the series.
+    pub(super) fn film(&self) -> impl Iterator<Item = Pixels> {
+        let moments = self.record.snapshots.iter();
+        moments.filter_map(|it| self.show_moment(it, run_pixels))
+    }
+
+    /// Draws the last frame of a film; `None` only if the page does not fit into memory.
+    pub(super) fn last(&self) -> Option<Pixels> {
+        self.show_end(run_pixels)
+    }
+
+    fn show_end<T>(&self, draw: impl FnOnce(&Scene<'_>) -> T) -> T {
         let left = &self.report.outcome.residual_frontiers;
         let (not_worth_it, residual): (Vec<_>, Vec<_>) = left
             .iter()
@@ -41,7 +56,7 @@ impl<'a> Album<'a> {
         let at = |left: Vec<&ResidualFrontier>| -> Vec<_> {
             left.iter().map(|left| (left.x_m, left.y_m)).collect()
         };
-        run_png(&Scene {
+        draw(&Scene {
             title: &self.report.headline(),
             subtitle: &self.report.in_short(),
             map: &self.record.map,
@@ -92,6 +107,10 @@ impl<'a> Album<'a> {
     }
 
     fn moment(&self, snapshot: &Snapshot) -> Vec<u8> {
+        self.show_moment(snapshot, run_png)
+    }
+
+    fn show_moment<T>(&self, snapshot: &Snapshot, draw: impl FnOnce(&Scene<'_>) -> T) -> T {
         let progress = &snapshot.progress;
         let seconds = progress.time_ms / 1000;
         let subtitle = format!(
@@ -102,7 +121,7 @@ impl<'a> Album<'a> {
             seconds % 60,
             progress.path_m
         );
-        run_png(&Scene {
+        draw(&Scene {
             title: &self.report.headline(),
             subtitle: &subtitle,
             map: &snapshot.map,

@@ -10,6 +10,7 @@ use host_sim::trial::mission::on_device;
 
 use super::args::ExploreArgs;
 use super::explore::Run;
+use super::film;
 
 /// Returns the folder in which a run goes on; `None` if none is asked for.
 pub(super) fn folder(args: &ExploreArgs) -> Result<Option<&Path>> {
@@ -25,10 +26,10 @@ pub(super) fn folder(args: &ExploreArgs) -> Result<Option<&Path>> {
              other run is kept"
         );
     }
-    if args.snapshots > 0 {
+    if film::frames(args) > 0 {
         bail!(
-            "--snapshots reads the device's map, and what is before the state is not read again; \
-             leave it out with --resume DIR"
+            "--snapshots and --film read the device's map, and what is before the state is not \
+             read again; leave them out with --resume DIR"
         );
     }
     Ok(Some(folder))

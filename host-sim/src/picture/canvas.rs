@@ -13,6 +13,17 @@ use super::text::outline;
 /// A point of the page.
 pub(super) type Spot = (f32, f32);
 
+/// The pixels of a page, row by row from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pixels {
+    /// Pixels of a row.
+    pub width: usize,
+    /// Number of rows.
+    pub height: usize,
+    /// Red, green, blue and 255 of each.
+    pub rgba: Vec<u8>,
+}
+
 /// A page.
 pub(super) struct Canvas {
     pixmap: Pixmap,
@@ -29,6 +40,16 @@ impl Canvas {
     /// Encodes the page as a PNG file.
     pub(super) fn png(&self) -> Option<Vec<u8>> {
         self.pixmap.encode_png().ok()
+    }
+
+    /// Returns the page's width, height and pixels.
+    pub(super) fn into_pixels(self) -> Pixels {
+        Pixels {
+            width: self.pixmap.width() as usize,
+            height: self.pixmap.height() as usize,
+            // The page is opaque, so the colours are not premultiplied.
+            rgba: self.pixmap.take(),
+        }
     }
 
     /// Fills a square without antialiasing, so that cells are crisp.

@@ -8,6 +8,7 @@
 //! All else is antialiased. North is up.
 
 mod canvas;
+pub mod film;
 mod ground;
 mod layers;
 mod legend;
@@ -26,6 +27,7 @@ use crate::trial::snapshot::Window;
 use canvas::{Canvas, Spot};
 use panels::Strip;
 
+pub use canvas::Pixels;
 pub use ground::Ground;
 pub use team::{TeamScene, team_png};
 
@@ -216,6 +218,18 @@ impl Frame {
 /// Draws the PNG file of a run; empty only if the page does not fit into memory.
 #[must_use]
 pub fn run_png(scene: &Scene<'_>) -> Vec<u8> {
+    let page = page(scene);
+    page.and_then(|page| page.png()).unwrap_or_default()
+}
+
+/// Draws a run; `None` only if the page does not fit into memory.
+#[must_use]
+pub fn run_pixels(scene: &Scene<'_>) -> Option<Pixels> {
+    page(scene).map(Canvas::into_pixels)
+}
+
+/// Draws the page of a run.
+fn page(scene: &Scene<'_>) -> Option<Canvas> {
     let frame = Frame::of(scene);
     let beside = scene.ground.map(|ground| (frame.beside(), ground));
     let right = beside.map_or(frame, |(frame, _)| frame);
@@ -228,10 +242,7 @@ pub fn run_png(scene: &Scene<'_>) -> Vec<u8> {
     let keys = PANEL_HEIGHT[usize::from(beside.is_some())] + more;
     let drawn = strip.map_or(under, |strip| under + strip.height() + FOOTER);
     let height = drawn.max(HEADER + keys) + MARGIN;
-    let page = Canvas::new(width.unsigned_abs(), height.unsigned_abs(), palette::PAGE);
-    let Some(mut canvas) = page else {
-        return Vec::new();
-    };
+    let mut canvas = Canvas::new(width.unsigned_abs(), height.unsigned_abs(), palette::PAGE)?;
     robots_map(&mut canvas, &frame, scene);
     if let Some((frame, ground)) = &beside {
         ground::cells(&mut canvas, frame, ground);
@@ -245,7 +256,7 @@ pub fn run_png(scene: &Scene<'_>) -> Vec<u8> {
     legend::lines(&mut canvas, scene.title, scene.subtitle);
     legend::scale_bar(&mut canvas, &frame);
     legend::panel(&mut canvas, maps + 32, scene);
-    canvas.png().unwrap_or_default()
+    Some(canvas)
 }
 
 /// Draws the map of the robot and all that lies on it.

@@ -72,6 +72,32 @@ fn json_prints_one_report_per_line_and_nothing_else() {
 }
 
 #[test]
+fn a_film_shows_the_run_and_changes_no_result() {
+    let folder = folder();
+    let run = |more: &[&str]| {
+        let arguments = ["explore", "loop", "--time-limit", "8", "--json", "--force"];
+        let (status, stdout, stderr) = outcome(&folder, &[&arguments, more].concat());
+        assert_eq!(status, 1, "the time limit ended it: {stderr}");
+        reports(&stdout).remove(0)
+    };
+    let plain = run(&[]);
+    let shown = run(&["--film", "film.gif"]);
+    assert_eq!(shown["digest"], plain["digest"]);
+    let home = folder.path().join("out/loop-frontier-0");
+    assert_eq!(files(&home), kept_files(), "a film needs no snapshots");
+
+    let file = fs::read(folder.path().join("film.gif")).expect("a film");
+    assert!(file.starts_with(b"GIF89a"));
+    // 8 s are 40 steps, and a picture is taken at each.
+    let ends = file.windows(4).filter(|it| it == &[0, 0x21, 0xf9, 4]);
+    assert!((39..=41).contains(&ends.count()));
+    let refused = ["explore", "loop", "--film", "film.gif"];
+    let (status, _, stderr) = outcome(&folder, &refused);
+    assert_eq!(status, 2, "{stderr}");
+    assert!(stderr.contains("--force"), "{stderr}");
+}
+
+#[test]
 fn snapshots_of_an_uneven_run_change_no_result() {
     let folder = folder();
     let run = |more: &[&str]| {
