@@ -42,7 +42,7 @@ mod symmetric;
 #[cfg(test)]
 mod tests;
 
-use crate::config::Config;
+use crate::config::{Config, LocaliseTuning};
 use crate::geometry::{CELL_M, MapFromOdom, MapPose, OdomPose, Pose, RobotFrame};
 use crate::input::Input;
 use crate::map::neighbourhood::Neighbourhood;
@@ -58,16 +58,6 @@ use scan_points::ScanPoints;
 use search::Search;
 use slip::{likelier, predictions};
 pub(crate) use symmetric::Symmetric;
-
-/// The pose at the start.
-const ORIGIN: Pose = Pose {
-    x_m: 0.0,
-    y_m: 0.0,
-    z_m: 0.0,
-    roll_rad: 0.0,
-    pitch_rad: 0.0,
-    yaw_rad: 0.0,
-};
 
 /// The localiser's memory.
 #[derive(Debug)]
@@ -110,7 +100,7 @@ impl Localiser {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            odom: OdomPose(ORIGIN),
+            odom: OdomPose(Pose::ORIGIN),
             has_odom: false,
             map_from_odom: MapFromOdom::IDENTITY,
             covariance: Symmetric::ZERO,
@@ -126,6 +116,12 @@ impl Localiser {
     #[must_use]
     pub fn odom(&self) -> OdomPose {
         self.odom
+    }
+
+    /// Returns the robot's pose in the map.
+    #[must_use]
+    pub fn pose(&self) -> MapPose {
+        self.to_map(&self.odom)
     }
 
     /// Returns a pose of the odometry in the map, with the last correction.
@@ -164,7 +160,7 @@ impl Localiser {
     pub fn location(&self) -> Location {
         let p = &self.covariance;
         Location {
-            pose: self.to_map(&self.odom()),
+            pose: self.pose(),
             covariance: [p.xx, p.xy, p.yy, p.xt, p.yt, p.tt],
             quality: self.quality,
         }
@@ -288,17 +284,7 @@ impl Localiser {
         }
         let predicted = &predicted;
         self.trusted_steps = self.trusted_steps.saturating_sub(1);
-        // A beam may end on ground that is free, so nothing contradicts the map there.
-        let is_doubtful = if is_uneven {
-            false
-        } else if self.trusted_steps > 0 {
-            found.agreement.is_refuted(tuning)
-        } else {
-            found
-                .agreement
-                .is_contradicted(self.contradicted > 0, tuning)
-        };
-        if !is_doubtful {
+        if !self.is_doubtful(&found, is_uneven, tuning) {
             return self.accept(&found, predicted);
         }
         if self.is_lost() {
@@ -310,6 +296,19 @@ impl Localiser {
             self.footing = Footing::Lost(Search::new());
         }
         *predicted
+    }
+
+    /// Returns true if an alignment contradicts the map. On uneven ground none does: a beam may end
+    /// on ground that is free.
+    fn is_doubtful(&self, found: &Aligned, is_uneven: bool, tuning: &LocaliseTuning) -> bool {
+        let agreement = &found.agreement;
+        if is_uneven {
+            false
+        } else if self.trusted_steps > 0 {
+            agreement.is_refuted(tuning)
+        } else {
+            agreement.is_contradicted(self.contradicted > 0, tuning)
+        }
     }
 
     /// Takes an alignment for the pose.
