@@ -17,7 +17,9 @@ use host_sim::trial::team::{Appointment, StartError, TeamMission, TeamRecord, Ti
 use host_sim::world::World;
 
 use crate::digests::Digest;
-pub use tables::{alignment, dropouts, speed_up, table};
+pub use tables::{
+    CONTACTS, Column, END, EQUAL_MAPS, HITS, alignment, by_run, dropouts, speed_up, table,
+};
 
 /// A robot that moved less than this stands, metres.
 const MOVED_M: f64 = 0.1;

@@ -27,31 +27,33 @@ pub trait Meter {
     fn stack_bytes(&self) -> u32;
 }
 
-/// A point of a request at which the counter is read. The numbers are those of the emulated board's
-/// marks, in `host-sim/cycles/src/steps.rs`.
+/// A point of a request at which the counter is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
 pub enum Mark {
     /// A request is complete.
     Request,
     /// The session has decoded it, or has done with the planner.
     Session,
-    /// The end of [`Stage::Sense`].
-    Sense,
-    /// The end of [`Stage::Topology`].
-    Topology,
-    /// The end of [`Stage::Plan`].
-    Plan,
-    /// The end of [`Stage::Window`].
-    Window,
-    /// The end of [`Stage::Solve`].
-    Solve,
-    /// The end of [`Stage::Drive`].
-    Drive,
+    /// The end of a stage of the planner.
+    Stage(Stage),
     /// The reply is about to be encoded.
     Reply,
     /// The reply is encoded.
     Replied,
+}
+
+impl Mark {
+    /// Returns the mark's number, as in `host-sim/cycles/src/steps.rs`.
+    #[must_use]
+    pub const fn number(self) -> usize {
+        match self {
+            Self::Request => 0,
+            Self::Session => 1,
+            Self::Stage(stage) => 2 + stage as usize,
+            Self::Reply => 8,
+            Self::Replied => 9,
+        }
+    }
 }
 
 /// A meter that measures nothing.
@@ -97,10 +99,14 @@ impl<'m, M: Meter> Stopwatch<'m, M> {
 
     /// Adds everything since the last mark to the stage `session`.
     pub(crate) fn mark_session(&mut self) {
-        let now = self.meter.mark(Mark::Session);
-        let counted = now.wrapping_sub(self.since);
-        self.since = now;
+        let counted = self.count(Mark::Session);
         self.stages.session = self.stages.session.wrapping_add(counted);
+    }
+
+    /// Returns what was counted since the last mark.
+    fn count(&mut self, mark: Mark) -> u32 {
+        let now = self.meter.mark(mark);
+        now.wrapping_sub(core::mem::replace(&mut self.since, now))
     }
 
     /// Returns the stages so far.
@@ -112,17 +118,16 @@ impl<'m, M: Meter> Stopwatch<'m, M> {
 impl<M: Meter> StageTimer for Stopwatch<'_, M> {
     #[inline(never)]
     fn mark(&mut self, stage: Stage) {
-        let (mark, total) = match stage {
-            Stage::Sense => (Mark::Sense, &mut self.stages.sense),
-            Stage::Topology => (Mark::Topology, &mut self.stages.topology),
-            Stage::Plan => (Mark::Plan, &mut self.stages.plan),
-            Stage::Window => (Mark::Window, &mut self.stages.window),
-            Stage::Solve => (Mark::Solve, &mut self.stages.solve),
-            Stage::Drive => (Mark::Drive, &mut self.stages.drive),
+        let counted = self.count(Mark::Stage(stage));
+        let stages = &mut self.stages;
+        let total = match stage {
+            Stage::Sense => &mut stages.sense,
+            Stage::Topology => &mut stages.topology,
+            Stage::Plan => &mut stages.plan,
+            Stage::Window => &mut stages.window,
+            Stage::Solve => &mut stages.solve,
+            Stage::Drive => &mut stages.drive,
         };
-        let now = self.meter.mark(mark);
-        let counted = now.wrapping_sub(self.since);
-        self.since = now;
         *total = total.wrapping_add(counted);
     }
 }
@@ -184,11 +189,12 @@ mod tests {
         assert_eq!(sum(&stages), 1144);
         let marks = [
             Mark::Session,
-            Mark::Sense,
-            Mark::Drive,
-            Mark::Sense,
+            Mark::Stage(Stage::Sense),
+            Mark::Stage(Stage::Drive),
+            Mark::Stage(Stage::Sense),
             Mark::Session,
         ];
         assert_eq!(script.2, marks);
+        assert_eq!(marks.map(Mark::number), [1, 2, 7, 2, 1]);
     }
 }

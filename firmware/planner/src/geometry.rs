@@ -149,6 +149,31 @@ impl Pose {
     }
 }
 
+impl Point {
+    /// Where a frame begins.
+    pub(crate) const ORIGIN: Self = Self { x_m: 0.0, y_m: 0.0 };
+}
+
+impl Pose {
+    /// Where a frame begins, upright.
+    pub(crate) const ORIGIN: Self = Self {
+        x_m: 0.0,
+        y_m: 0.0,
+        z_m: 0.0,
+        roll_rad: 0.0,
+        pitch_rad: 0.0,
+        yaw_rad: 0.0,
+    };
+}
+
+impl Twist {
+    /// No motion.
+    pub(crate) const STILL: Self = Self {
+        linear_mps: 0.0,
+        angular_radps: 0.0,
+    };
+}
+
 impl MapFromOdom {
     /// No motion.
     pub(crate) const IDENTITY: Self = Self {

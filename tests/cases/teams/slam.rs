@@ -4,7 +4,7 @@
 
 use fieldline_tests::runs::in_parallel;
 use fieldline_tests::table::{Table, number};
-use fieldline_tests::teams::TeamRun;
+use fieldline_tests::teams::{CONTACTS, Column, END, EQUAL_MAPS, HITS, TeamRun, by_run};
 use fieldline_tests::{golden, worlds};
 use host_sim::link::Link;
 use host_sim::link::loopback::loopback;
@@ -51,47 +51,20 @@ fn errors(report: &TeamReport, is_mean: bool) -> String {
 }
 
 fn table(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
-    let heads = [
-        "world",
-        "team",
-        "ended",
-        "seed",
-        "known %",
-        "end s",
-        "error m",
-        "most m",
-        "closed",
-        "corrections",
-        "hits",
-        "contacts",
-        "equal maps",
+    let columns: [Column; 8] = [
+        END,
+        ("error m", |_, it| errors(it, true)),
+        ("most m", |_, it| errors(it, false)),
+        ("closed", |_, it| {
+            let closed = slams(it).map(|slam| slam.closed);
+            closed.sum::<usize>().to_string()
+        }),
+        ("corrections", |_, it| corrections(it).to_string()),
+        HITS,
+        CONTACTS,
+        EQUAL_MAPS,
     ];
-    let mut table = Table::new(3, &heads);
-    for (run, report) in runs.iter().zip(reports) {
-        let whole = &report.whole;
-        table.row(vec![
-            whole.world.clone(),
-            run.settings(),
-            format!("{}({})", whole.outcome.status, whole.outcome.reason),
-            whole.seed.to_string(),
-            format!("{:.2}", whole.coverage.fraction * 100.0),
-            format!("{:.1}", whole.sim_time_s),
-            errors(report, true),
-            errors(report, false),
-            slams(report)
-                .map(|slam| slam.closed)
-                .sum::<usize>()
-                .to_string(),
-            corrections(report).to_string(),
-            whole.safety.collisions.to_string(),
-            whole.safety.robot_contacts.unwrap_or(0).to_string(),
-            report
-                .team
-                .maps_equal
-                .map_or("-".into(), |it| it.to_string()),
-        ]);
-    }
-    table
+    by_run(&columns, runs, reports)
 }
 
 /// The robots' maps are equal at the end, so a peer has no wall of a tile from before a correction.

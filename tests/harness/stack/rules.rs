@@ -18,6 +18,10 @@ pub struct Rules {
     pub restarts: &'static [&'static str],
 }
 
+/// q at a place, of which a search is told.
+const POTENTIAL: &str = "fieldline_planner::planner::steer::\
+                         <impl fieldline_planner::planner::step::Step<_,_>>::follow::{{closure}}";
+
 /// The statements for the image. Its sessions set no level of goals (`Config::goal_level`), so the
 /// function that would call one calls nobody.
 pub const RULES: Rules = Rules {
@@ -33,11 +37,11 @@ pub const RULES: Rules = Rules {
         ),
         (
             "fieldline_planner::drive::search_query::SearchQuery<H>::leads_on",
-            &["fieldline_planner::planner::steer::steer::{{closure}}"],
+            &[POTENTIAL],
         ),
         (
             "fieldline_planner::drive::search_query::SearchQuery<H>::leads_on::{{closure}}",
-            &["fieldline_planner::planner::steer::steer::{{closure}}"],
+            &[POTENTIAL],
         ),
         (
             "fieldline_planner::drive::roll_out::roll_out",

@@ -6,57 +6,74 @@ use host_sim::trial::team::TeamRecord;
 use super::{TeamRun, longest_stand_s};
 use crate::table::{Table, number};
 
-/// Makes a table with one line for each run.
+/// A column of a table with one line for each run: its head, and the cell of a run.
+pub type Column = (&'static str, fn(&TeamRun<'_>, &TeamReport) -> String);
+
+/// What every such table begins with: the run, and how it ended.
+const RUN: [Column; 5] = [
+    ("world", |_, it| it.whole.world.clone()),
+    ("team", |run, _| run.settings()),
+    ("ended", |_, it| {
+        format!("{}({})", it.whole.outcome.status, it.whole.outcome.reason)
+    }),
+    ("seed", |_, it| it.whole.seed.to_string()),
+    ("known %", |_, it| {
+        format!("{:.2}", it.whole.coverage.fraction * 100.0)
+    }),
+];
+/// When 99 % of the ground were known.
+const T99: Column = ("T99 s", |_, it| number(it.whole.coverage.t99_s, 1));
+/// When the run ended.
+pub const END: Column = ("end s", |_, it| format!("{:.1}", it.whole.sim_time_s));
+/// Touches of the world, falls and tips.
+pub const HITS: Column = ("hits", |_, it| {
+    let safety = &it.whole.safety;
+    (safety.collisions + safety.falls + safety.tips).to_string()
+});
+/// Touches of two robots.
+pub const CONTACTS: Column = ("contacts", |_, it| {
+    it.whole.safety.robot_contacts.unwrap_or(0).to_string()
+});
+/// Whether all robots have the same map at the end.
+pub const EQUAL_MAPS: Column = ("equal maps", |_, it| {
+    let equal = it.team.maps_equal;
+    equal.map_or("-".into(), |it| it.to_string())
+});
+
+/// Makes a table with one line for each run: which it is, how it ended, and more columns.
 #[must_use]
-pub fn table(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
-    let mut table = Table::new(
-        3,
-        &[
-            "world",
-            "team",
-            "ended",
-            "seed",
-            "known %",
-            "T90 s",
-            "T99 s",
-            "end s",
-            "path m",
-            "after another",
-            "twice",
-            "hits",
-            "contacts",
-            "gap m",
-            "kB",
-            "lost",
-            "equal maps",
-        ],
-    );
+pub fn by_run(more: &[Column], runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
+    let columns = [&RUN[..], more].concat();
+    let heads: Vec<&str> = columns.iter().map(|(head, _)| *head).collect();
+    let mut table = Table::new(3, &heads);
     for (run, report) in runs.iter().zip(reports) {
-        let whole = &report.whole;
-        table.row(vec![
-            whole.world.clone(),
-            run.settings(),
-            format!("{}({})", whole.outcome.status, whole.outcome.reason),
-            whole.seed.to_string(),
-            format!("{:.2}", whole.coverage.fraction * 100.0),
-            number(whole.coverage.t90_s, 1),
-            number(whole.coverage.t99_s, 1),
-            format!("{:.1}", whole.sim_time_s),
-            format!("{:.1}", whole.path_length_m),
-            format!("{:.2}", report.team.driven_after_another),
-            format!("{:.2}", report.team.measured_twice),
-            (whole.safety.collisions + whole.safety.falls + whole.safety.tips).to_string(),
-            whole.safety.robot_contacts.unwrap_or(0).to_string(),
-            number(report.team.min_robot_gap_m, 3),
-            format!("{:.1}", report.radio.traffic.sent_bytes as f64 / 1e3),
-            report.radio.traffic.lost.to_string(),
-            report
-                .team
-                .maps_equal
-                .map_or("-".into(), |it| it.to_string()),
-        ]);
+        table.row(columns.iter().map(|(_, cell)| cell(run, report)).collect());
     }
     table
+}
+
+/// Makes a table of what robots of a team do for each other.
+#[must_use]
+pub fn table(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
+    let columns: [Column; 12] = [
+        ("T90 s", |_, it| number(it.whole.coverage.t90_s, 1)),
+        T99,
+        END,
+        ("path m", |_, it| format!("{:.1}", it.whole.path_length_m)),
+        ("after another", |_, it| {
+            format!("{:.2}", it.team.driven_after_another)
+        }),
+        ("twice", |_, it| format!("{:.2}", it.team.measured_twice)),
+        HITS,
+        CONTACTS,
+        ("gap m", |_, it| number(it.team.min_robot_gap_m, 3)),
+        ("kB", |_, it| {
+            format!("{:.1}", it.radio.traffic.sent_bytes as f64 / 1e3)
+        }),
+        ("lost", |_, it| it.radio.traffic.lost.to_string()),
+        EQUAL_MAPS,
+    ];
+    by_run(&columns, runs, reports)
 }
 
 const DROPOUT_COLUMNS: [&str; 15] = [
@@ -125,58 +142,36 @@ pub fn dropouts(runs: &[TeamRun<'_>], ended: &[(TeamReport, TeamRecord)]) -> Tab
     table
 }
 
-/// Makes a table with one line for each run of robots whose odometry drifts.
+/// Makes a table of robots whose odometry drifts.
 ///
 /// *Met* is when the map of each robot came to lie in the team's coordinates. *Apart* is the error
 /// of the motion between two maps after that, in the median and at most, over all pairs and steps.
 #[must_use]
 pub fn alignment(runs: &[TeamRun<'_>], reports: &[TeamReport]) -> Table {
-    let mut table = Table::new(
-        3,
-        &[
-            "world",
-            "team",
-            "ended",
-            "seed",
-            "known %",
-            "T99 s",
-            "end s",
-            "met s",
-            "apart m",
-            "at most",
-            "apart deg",
-            "at most",
-            "hits",
-            "contacts",
-            "equal maps",
-        ],
-    );
-    for (run, report) in runs.iter().zip(reports) {
-        let whole = &report.whole;
-        let apart = report.team.agreement;
-        let met: Vec<String> = report.robots.iter().map(|it| number(it.met_s, 0)).collect();
-        table.row(vec![
-            whole.world.clone(),
-            run.settings(),
-            format!("{}({})", whole.outcome.status, whole.outcome.reason),
-            whole.seed.to_string(),
-            format!("{:.2}", whole.coverage.fraction * 100.0),
-            number(whole.coverage.t99_s, 1),
-            format!("{:.1}", whole.sim_time_s),
-            met.join("/"),
-            number(apart.map(|it| it.median_m), 2),
-            number(apart.map(|it| it.max_m), 2),
-            number(apart.map(|it| it.median_deg), 2),
-            number(apart.map(|it| it.max_deg), 2),
-            whole.safety.collisions.to_string(),
-            whole.safety.robot_contacts.unwrap_or(0).to_string(),
-            report
-                .team
-                .maps_equal
-                .map_or("-".into(), |it| it.to_string()),
-        ]);
-    }
-    table
+    let columns: [Column; 10] = [
+        T99,
+        END,
+        ("met s", |_, it| {
+            let met: Vec<String> = it.robots.iter().map(|it| number(it.met_s, 0)).collect();
+            met.join("/")
+        }),
+        ("apart m", |_, it| {
+            number(it.team.agreement.map(|it| it.median_m), 2)
+        }),
+        ("at most", |_, it| {
+            number(it.team.agreement.map(|it| it.max_m), 2)
+        }),
+        ("apart deg", |_, it| {
+            number(it.team.agreement.map(|it| it.median_deg), 2)
+        }),
+        ("at most", |_, it| {
+            number(it.team.agreement.map(|it| it.max_deg), 2)
+        }),
+        HITS,
+        CONTACTS,
+        EQUAL_MAPS,
+    ];
+    by_run(&columns, runs, reports)
 }
 
 const SPEED_UP_COLUMNS: [&str; 14] = [

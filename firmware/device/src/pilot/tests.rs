@@ -4,9 +4,10 @@ use std::boxed::Box;
 
 use fieldline_planner::{State, Tuning, Workspace};
 use fieldline_protocol::message::{
-    Activity, Beacon, Body, Budget, Control, Correct, CorrectedTiles, Errand, Fault, Fence,
-    FencePolygon, Finish, Hull, Laser, LoopLimits, Member, Observation, Order, Packet, Parameter,
-    Refusal, Scan, SpaceField, Start, Status, Strategy, Team, Twist,
+    Activity, Beacon, Body, Budget, Command, Control, Correct, CorrectedTiles, CorrectionProgress,
+    Errand, Fault, Fence, FencePolygon, Finish, Hull, Laser, LoopLimits, Member, Observation,
+    Order, Packet, Parameter, Recall, Refusal, Scan, SpaceField, Start, Status, Strategy, Team,
+    Twist,
 };
 use fixed::types::{I4F12, I16F16};
 
@@ -86,28 +87,84 @@ impl Bench {
     }
 }
 
-fn started() -> (Pilot, Bench) {
-    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
-    let status = pilot.control(&mut bench.memory(), &Control::Start(start()));
-    assert_eq!(status, Ok(Status::Exploring));
-    (pilot, bench)
+/// A pilot and its memory.
+struct Device {
+    pilot: Pilot,
+    bench: Bench,
+}
+
+impl Device {
+    fn new() -> Self {
+        Self {
+            pilot: Pilot::new(),
+            bench: Bench::new(),
+        }
+    }
+
+    /// Returns a device with a session.
+    fn started(start: Start) -> Self {
+        let mut device = Self::new();
+        assert_eq!(device.order(&Control::Start(start)), Ok(Status::Exploring));
+        device
+    }
+
+    fn order(&mut self, control: &Control) -> Result<Status, Refusal> {
+        self.pilot.control(&mut self.bench.memory(), control)
+    }
+
+    fn observe(&mut self, observation: &Observation) -> Result<Command, Refusal> {
+        let mut memory = self.bench.memory();
+        self.pilot.observe(&mut memory, observation, &mut ())
+    }
+
+    /// Returns the status and the velocity after an observation at a time.
+    fn answer(&mut self, time_ms: u32) -> (Status, Twist) {
+        let command = self.observe(&observation(time_ms)).unwrap();
+        (command.status, command.velocity)
+    }
+
+    fn say(&mut self) -> Result<Option<Packet>, Refusal> {
+        self.pilot.say(&mut self.bench.memory())
+    }
+
+    fn hear(&mut self, packet: &Packet) -> Result<(), Refusal> {
+        self.pilot.hear(&mut self.bench.memory(), packet)
+    }
+
+    fn correct(&mut self, correct: &Correct) -> Result<CorrectionProgress, Refusal> {
+        self.pilot.correct(&mut self.bench.memory(), correct)
+    }
+
+    fn tiles(&mut self, part: &CorrectedTiles) -> Result<CorrectionProgress, Refusal> {
+        self.pilot.tiles(&mut self.bench.memory(), part)
+    }
+
+    fn recall(&mut self, recall: &Recall) -> Result<CorrectionProgress, Refusal> {
+        self.pilot.recall(&mut self.bench.memory(), recall)
+    }
+
+    /// Returns the first packet after an observation.
+    fn said(&mut self, observation: &Observation) -> Option<Packet> {
+        self.observe(observation).unwrap();
+        self.say().unwrap()
+    }
 }
 
 #[test]
 fn nothing_happens_before_a_start() {
-    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
-    assert_eq!(pilot.status(), Status::Idle);
+    let mut device = Device::new();
+    assert_eq!(device.pilot.status(), Status::Idle);
     for control in [Control::Pause, Control::Resume, Control::Stop] {
-        let refused = pilot.control(&mut bench.memory(), &control);
+        let refused = device.order(&control);
         assert_eq!(refused, Err(Refusal::NotStarted), "{control:?}");
     }
-    let refused = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
+    let refused = device.observe(&observation(0));
     assert_eq!(refused, Err(Refusal::NotStarted));
 }
 
 #[test]
 fn a_survey_maps_and_localises_and_never_moves_or_ends() {
-    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let mut device = Device::new();
     let level = start().lasers[0];
     // A strategy that would end at the first covered cell.
     let metres = I16F16::from_num::<i32>;
@@ -124,7 +181,7 @@ fn a_survey_maps_and_localises_and_never_moves_or_ends() {
         survey: true,
         ..start()
     };
-    let status = pilot.control(&mut bench.memory(), &Control::Start(survey));
+    let status = device.order(&Control::Start(survey));
     assert_eq!(status, Ok(Status::Exploring));
     // 4 m of free space is a closed room: a session that explores ends in it.
     for step in 0..60 {
@@ -134,113 +191,91 @@ fn a_survey_maps_and_localises_and_never_moves_or_ends() {
             // Somebody stands before the laser: an exploration would not start.
             scan.scans[0].ranges_mm.fill(50);
         }
-        let command = pilot.observe(&mut bench.memory(), &scan, &mut ()).unwrap();
+        let command = device.observe(&scan).unwrap();
         assert_eq!(command.status, Status::Exploring);
         assert_eq!(command.velocity, Twist::default());
         assert!(command.location.is_some());
     }
-    assert!(Pilot::tile(&bench.memory(), 0, 0).is_some());
-    assert_eq!(Pilot::field_row(&bench.memory(), 0), None);
+    assert!(Pilot::tile(&device.bench.memory(), 0, 0).is_some());
+    assert_eq!(Pilot::field_row(&device.bench.memory(), 0), None);
 }
 
 #[test]
 fn a_refused_start_changes_nothing() {
-    let (mut pilot, mut bench) = started();
+    let mut device = Device::started(start());
     let bad = Start {
         robot_radius_mm: 0,
         ..start()
     };
-    let refused = pilot.control(&mut bench.memory(), &Control::Start(bad));
+    let refused = device.order(&Control::Start(bad));
     assert_eq!(refused, Err(Refusal::BadParameter(Parameter::Radius)));
-    assert_eq!(pilot.status(), Status::Exploring);
+    assert_eq!(device.pilot.status(), Status::Exploring);
 }
 
 #[test]
 fn a_pause_holds_until_resume() {
-    let (mut pilot, mut bench) = started();
-    let paused = pilot.control(&mut bench.memory(), &Control::Pause);
+    let mut device = Device::started(start());
+    let paused = device.order(&Control::Pause);
     assert_eq!(paused, Ok(Status::Paused));
-    let command = pilot
-        .observe(&mut bench.memory(), &observation(100), &mut ())
-        .unwrap();
-    assert_eq!(
-        (command.status, command.velocity),
-        (Status::Paused, Twist::default())
-    );
-    let resumed = pilot.control(&mut bench.memory(), &Control::Resume);
+    assert_eq!(device.answer(100), (Status::Paused, Twist::default()));
+    let resumed = device.order(&Control::Resume);
     assert_eq!(resumed, Ok(Status::Exploring));
 }
 
 #[test]
 fn a_stopped_session_stays_stopped() {
-    let (mut pilot, mut bench) = started();
+    let mut device = Device::started(start());
     let stopped = Status::Finished(Finish::Stopped);
-    assert_eq!(
-        pilot.control(&mut bench.memory(), &Control::Stop),
-        Ok(stopped)
-    );
-    assert_eq!(
-        pilot.control(&mut bench.memory(), &Control::Resume),
-        Ok(stopped)
-    );
-    let command = pilot
-        .observe(&mut bench.memory(), &observation(100), &mut ())
-        .unwrap();
-    assert_eq!(
-        (command.status, command.velocity),
-        (stopped, Twist::default())
-    );
+    assert_eq!(device.order(&Control::Stop), Ok(stopped));
+    assert_eq!(device.order(&Control::Resume), Ok(stopped));
+    assert_eq!(device.answer(100), (stopped, Twist::default()));
 }
 
 #[test]
 fn the_emergency_stop_holds_until_released_and_resumed() {
-    let (mut pilot, mut bench) = started();
-    pilot.set_emergency_stop(true);
-    let command = pilot
-        .observe(&mut bench.memory(), &observation(100), &mut ())
-        .unwrap();
+    let mut device = Device::started(start());
+    device.pilot.set_emergency_stop(true);
     assert_eq!(
-        (command.status, command.velocity),
+        device.answer(100),
         (Status::EmergencyStop, Twist::default())
     );
-    let held = pilot.control(&mut bench.memory(), &Control::Resume);
+    let held = device.order(&Control::Resume);
     assert_eq!(held, Ok(Status::EmergencyStop), "still pressed");
-    let held = pilot.control(&mut bench.memory(), &Control::Start(start()));
+    let held = device.order(&Control::Start(start()));
     assert_eq!(held, Ok(Status::EmergencyStop), "still pressed");
-    pilot.set_emergency_stop(false);
+    device.pilot.set_emergency_stop(false);
     assert_eq!(
-        pilot.status(),
+        device.pilot.status(),
         Status::EmergencyStop,
         "a release does not resume"
     );
-    let resumed = pilot.control(&mut bench.memory(), &Control::Resume);
+    let resumed = device.order(&Control::Resume);
     assert_eq!(resumed, Ok(Status::Exploring));
 }
 
 #[test]
 fn a_wrong_observation_is_a_fault_until_the_next() {
-    let (mut pilot, mut bench) = started();
+    let mut device = Device::started(start());
     let mut wrong = observation(100);
     wrong.scans[1].ranges_mm.pop();
-    let command = pilot.observe(&mut bench.memory(), &wrong, &mut ()).unwrap();
+    let command = device.observe(&wrong).unwrap();
     assert_eq!(command.status, Status::Fault(Fault::BadObservation));
     assert_eq!(command.velocity, Twist::default());
-    assert_eq!(pilot.status(), Status::Exploring);
+    assert_eq!(device.pilot.status(), Status::Exploring);
 }
 
 #[test]
 fn a_reset_ends_the_session_but_not_the_emergency_stop() {
-    let (mut pilot, mut bench) = started();
-    pilot.set_emergency_stop(true);
-    let status = pilot.control(&mut bench.memory(), &Control::Reset);
+    let mut device = Device::started(start());
+    device.pilot.set_emergency_stop(true);
+    let status = device.order(&Control::Reset);
     assert_eq!(status, Ok(Status::EmergencyStop));
-    pilot.set_emergency_stop(false);
-    let refused = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
+    device.pilot.set_emergency_stop(false);
+    let refused = device.observe(&observation(0));
     assert_eq!(refused, Err(Refusal::NotStarted));
 }
 
-fn in_team() -> (Pilot, Bench) {
-    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+fn in_team() -> Device {
     let team = Team {
         member: Member { id: 1, boot: 4 },
         origin: (I16F16::lit("2"), I16F16::lit("-1")),
@@ -248,13 +283,10 @@ fn in_team() -> (Pilot, Bench) {
         sd_mm: 0,
         sd_mrad: 0,
     };
-    let start = Start {
+    Device::started(Start {
         team: Some(team),
         ..start()
-    };
-    let status = pilot.control(&mut bench.memory(), &Control::Start(start));
-    assert_eq!(status, Ok(Status::Exploring));
-    (pilot, bench)
+    })
 }
 
 fn of_another(sequence: u16) -> Packet {
@@ -267,39 +299,22 @@ fn of_another(sequence: u16) -> Packet {
 
 #[test]
 fn a_robot_alone_neither_hears_nor_says() {
-    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
-    let mut memory = bench.memory();
-    assert_eq!(pilot.say(&mut memory), Err(Refusal::NotStarted));
-    let (mut pilot, mut bench) = started();
-    let mut memory = bench.memory();
-    assert_eq!(pilot.say(&mut memory), Err(Refusal::NoTeam));
-    let heard = pilot.hear(&mut memory, &of_another(0));
+    let mut device = Device::new();
+    assert_eq!(device.say(), Err(Refusal::NotStarted));
+    let mut device = Device::started(start());
+    assert_eq!(device.say(), Err(Refusal::NoTeam));
+    let heard = device.hear(&of_another(0));
     assert_eq!(heard, Err(Refusal::NoTeam));
-}
-
-/// Returns the first packet after an observation.
-fn said(pilot: &mut Pilot, bench: &mut Bench, observation: &Observation) -> Option<Packet> {
-    let mut memory = bench.memory();
-    pilot.observe(&mut memory, observation, &mut ()).unwrap();
-    pilot.say(&mut memory).unwrap()
-}
-
-/// Returns the beacon after an observation.
-fn beacon(pilot: &mut Pilot, bench: &mut Bench, time_ms: u32) -> Beacon {
-    match said(pilot, bench, &observation(time_ms)).map(|packet| packet.body) {
-        Some(Body::Beacon(beacon)) => beacon,
-        other => panic!("{other:?}"),
-    }
 }
 
 /// The odometry starts at (2 m, −1 m) of the team and is turned left by a right angle.
 #[test]
 fn a_beacon_tells_the_pose_in_the_coordinates_of_the_team() {
-    let (mut pilot, mut bench) = in_team();
-    assert_eq!(pilot.say(&mut bench.memory()), Ok(None), "no step yet");
+    let mut device = in_team();
+    assert_eq!(device.say(), Ok(None), "no step yet");
     let mut observation = observation(0);
     observation.pose.x = I16F16::lit("0.5");
-    let first = said(&mut pilot, &mut bench, &observation).unwrap();
+    let first = device.said(&observation).unwrap();
     assert_eq!((first.from.id, first.from.boot, first.sequence), (1, 4, 0));
     let Body::Beacon(beacon) = first.body else {
         panic!("{first:?}");
@@ -312,28 +327,30 @@ fn a_beacon_tells_the_pose_in_the_coordinates_of_the_team() {
 
 #[test]
 fn a_robot_that_stands_by_order_goes_on_to_say_so() {
-    let (mut pilot, mut bench) = in_team();
+    let mut device = in_team();
     let orders = [
         (Control::Pause, Activity::Standing),
         (Control::Resume, Activity::Exploring),
         (Control::Stop, Activity::Gone),
     ];
     for (time_ms, (order, activity)) in (0..).step_by(200).zip(orders) {
-        pilot.control(&mut bench.memory(), &order).unwrap();
-        let beacon = beacon(&mut pilot, &mut bench, time_ms);
-        assert_eq!(beacon.activity, activity, "{order:?}");
+        device.order(&order).unwrap();
+        match device.said(&observation(time_ms)).map(|packet| packet.body) {
+            Some(Body::Beacon(beacon)) => assert_eq!(beacon.activity, activity, "{order:?}"),
+            other => panic!("{other:?}"),
+        }
     }
 }
 
 #[test]
 fn peers_are_heard_and_the_own_packets_are_not() {
-    let (mut pilot, mut bench) = in_team();
+    let mut device = in_team();
     let mut own = of_another(0);
     own.from.id = 1;
-    pilot.hear(&mut bench.memory(), &own).unwrap();
-    assert_eq!(bench.state.peers().count(), 0);
-    pilot.hear(&mut bench.memory(), &of_another(1)).unwrap();
-    assert_eq!(bench.state.peers().count(), 1);
+    device.hear(&own).unwrap();
+    assert_eq!(device.bench.state.peers().count(), 0);
+    device.hear(&of_another(1)).unwrap();
+    assert_eq!(device.bench.state.peers().count(), 1);
 }
 
 /// Returns a square with the middle at the start and this half side.
@@ -348,7 +365,7 @@ fn square(half_m: i32, bounds: bool) -> Fence {
 
 #[test]
 fn a_fence_that_is_none_is_refused_and_a_start_outside_ends() {
-    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let mut device = Device::new();
     let mut crossed = square(3, true);
     crossed.corners.swap(0, 1);
     let mut short = square(3, true);
@@ -357,7 +374,7 @@ fn a_fence_that_is_none_is_refused_and_a_start_outside_ends() {
     long.corners.extend([(I16F16::ZERO, I16F16::ZERO)]);
     for fence in [crossed, short, long] {
         let fenced = Control::Start(Start { fence, ..start() });
-        let refused = pilot.control(&mut bench.memory(), &fenced);
+        let refused = device.order(&fenced);
         assert_eq!(refused, Err(Refusal::BadParameter(Parameter::Fence)));
     }
     for (fence, status) in [
@@ -365,36 +382,34 @@ fn a_fence_that_is_none_is_refused_and_a_start_outside_ends() {
         (square(2, false), Status::Fault(Fault::StartForbidden)),
     ] {
         let fenced = Control::Start(Start { fence, ..start() });
-        pilot.control(&mut bench.memory(), &fenced).unwrap();
-        let command = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
-        assert_eq!(command.unwrap().status, status);
+        device.order(&fenced).unwrap();
+        assert_eq!(device.answer(0).0, status);
     }
-    let refused = pilot.control(&mut bench.memory(), &Control::Home);
+    let refused = device.order(&Control::Home);
     assert_eq!(refused, Err(Refusal::NotReady));
 }
 
 /// A session that was given a map goes on: the robot may stand where a start is refused.
 #[test]
 fn a_session_with_a_map_is_no_start() {
-    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let mut device = Device::new();
     let fence = square(2, false);
     let fenced = Control::Start(Start { fence, ..start() });
-    pilot.control(&mut bench.memory(), &fenced).unwrap();
+    device.order(&fenced).unwrap();
     let opening = Correct {
         epoch: 1,
         ..Correct::default()
     };
-    pilot.correct(&mut bench.memory(), &opening).unwrap();
+    device.correct(&opening).unwrap();
     let last = CorrectedTiles {
         epoch: 1,
         last: true,
         ..CorrectedTiles::default()
     };
-    let progress = pilot.tiles(&mut bench.memory(), &last).unwrap();
+    let progress = device.tiles(&last).unwrap();
     assert!(progress.closed);
-    let command = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
-    assert_eq!(command.unwrap().status, Status::Exploring);
-    let home = pilot.control(&mut bench.memory(), &Control::Home);
+    assert_eq!(device.answer(0).0, Status::Exploring);
+    let home = device.order(&Control::Home);
     assert_eq!(
         home,
         Err(Refusal::BadGoal),
@@ -405,84 +420,55 @@ fn a_session_with_a_map_is_no_start() {
 /// A device that was reset begins its session where the robot is, and is told where home is.
 #[test]
 fn home_is_where_it_is_set_and_no_longer_where_the_session_began() {
-    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let mut device = Device::new();
     let set = |x: f32| Control::SetHome {
         x: I16F16::from_num(x),
         y: I16F16::ZERO,
         yaw: I16F16::ZERO,
     };
-    let refused = pilot.control(&mut bench.memory(), &set(0.0));
+    let refused = device.order(&set(0.0));
     assert_eq!(refused, Err(Refusal::NotStarted));
     let go = Control::Start(start());
-    pilot.control(&mut bench.memory(), &go).unwrap();
-    let far = pilot.control(&mut bench.memory(), &set(4_000.0));
+    device.order(&go).unwrap();
+    let far = device.order(&set(4_000.0));
     assert_eq!(far, Err(Refusal::BadGoal));
-    pilot.control(&mut bench.memory(), &set(-7.5)).unwrap();
-    pilot
-        .observe(&mut bench.memory(), &observation(0), &mut ())
-        .unwrap();
-    assert_eq!(bench.memory().state.home().x_m, -7.5);
-    let home = pilot.control(&mut bench.memory(), &Control::Home);
+    device.order(&set(-7.5)).unwrap();
+    device.observe(&observation(0)).unwrap();
+    assert_eq!(device.bench.memory().state.home().x_m, -7.5);
+    let home = device.order(&Control::Home);
     assert_eq!(home, Ok(Status::Going(Errand::Home)));
-    pilot.control(&mut bench.memory(), &go).unwrap();
-    pilot
-        .observe(&mut bench.memory(), &observation(0), &mut ())
-        .unwrap();
-    assert_eq!(bench.memory().state.home().x_m, 0.0, "a new session");
+    device.order(&go).unwrap();
+    device.observe(&observation(0)).unwrap();
+    assert_eq!(device.bench.memory().state.home().x_m, 0.0, "a new session");
 }
 
 #[test]
 fn orders_are_taken_once_there_is_a_scan_and_say_why_not() {
-    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
+    let mut device = Device::new();
     let go_to = |x: i32| Control::GoTo {
         x: I16F16::from_num(x),
         y: I16F16::ZERO,
     };
-    let order = |pilot: &mut Pilot, bench: &mut Bench, control: &Control| {
-        pilot.control(&mut bench.memory(), control)
-    };
-    assert_eq!(
-        order(&mut pilot, &mut bench, &Control::Home),
-        Err(Refusal::NotStarted)
-    );
+    assert_eq!(device.order(&Control::Home), Err(Refusal::NotStarted));
     let fence = square(3, true);
     let fenced = Control::Start(Start { fence, ..start() });
-    pilot.control(&mut bench.memory(), &fenced).unwrap();
-    assert_eq!(
-        order(&mut pilot, &mut bench, &Control::Home),
-        Err(Refusal::NotReady)
-    );
-    pilot
-        .observe(&mut bench.memory(), &observation(0), &mut ())
-        .unwrap();
+    device.order(&fenced).unwrap();
+    assert_eq!(device.order(&Control::Home), Err(Refusal::NotReady));
+    device.observe(&observation(0)).unwrap();
     for far in [4, 30_000] {
-        assert_eq!(
-            order(&mut pilot, &mut bench, &go_to(far)),
-            Err(Refusal::BadGoal)
-        );
+        assert_eq!(device.order(&go_to(far)), Err(Refusal::BadGoal));
     }
     let going = Status::Going(Errand::Goal);
-    assert_eq!(order(&mut pilot, &mut bench, &go_to(2)), Ok(going));
-    assert_eq!(
-        order(&mut pilot, &mut bench, &Control::Pause),
-        Ok(Status::Paused)
-    );
-    assert_eq!(order(&mut pilot, &mut bench, &Control::Resume), Ok(going));
-    let home = order(&mut pilot, &mut bench, &Control::Home);
+    assert_eq!(device.order(&go_to(2)), Ok(going));
+    assert_eq!(device.order(&Control::Pause), Ok(Status::Paused));
+    assert_eq!(device.order(&Control::Resume), Ok(going));
+    let home = device.order(&Control::Home);
     assert_eq!(home, Ok(Status::Going(Errand::Home)));
     // The robot has not moved.
-    let command = pilot.observe(&mut bench.memory(), &observation(200), &mut ());
-    let mut status = command.unwrap().status;
-    for step in 2..20 {
-        let command = pilot.observe(&mut bench.memory(), &observation(200 * step), &mut ());
-        status = command.unwrap().status;
-    }
-    assert_eq!(status, Status::Arrived(Errand::Home));
-    let explore = order(&mut pilot, &mut bench, &Control::Explore);
+    let last = (1..20).map(|step| device.answer(200 * step).0).last();
+    assert_eq!(last, Some(Status::Arrived(Errand::Home)));
+    let explore = device.order(&Control::Explore);
     assert_eq!(explore, Ok(Status::Exploring));
-    order(&mut pilot, &mut bench, &Control::Stop).unwrap();
-    assert_eq!(
-        order(&mut pilot, &mut bench, &Control::Home),
-        Err(Refusal::NotReady)
-    );
+    device.order(&Control::Stop).unwrap();
+    assert_eq!(device.order(&Control::Home), Err(Refusal::NotReady));
 }

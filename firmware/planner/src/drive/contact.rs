@@ -23,11 +23,6 @@ const HELD_PART: f32 = 1.0 / 3.0;
 /// Distance of a felt point from the hull, metres: what the drive may still approach.
 const AWAY_M: f32 = 0.01;
 
-const STANDING: Twist = Twist {
-    linear_mps: 0.0,
-    angular_radps: 0.0,
-};
-
 /// A contact, by the side with which the robot led.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Contact {
@@ -54,8 +49,8 @@ impl ContactSense {
     /// Returns the sense of a robot that was told nothing yet.
     pub(crate) const fn new() -> Self {
         Self {
-            told: STANDING,
-            measured: STANDING,
+            told: Twist::STILL,
+            measured: Twist::STILL,
             held_periods: 0,
         }
     }

@@ -16,7 +16,7 @@ const ALIGNED_RAD: f32 = 0.2;
 /// Least distance from the start of a place where the robot turns to the heading by a larger angle,
 /// metres: nearer by there is hardly more room.
 const ELSEWHERE_M: f32 = 0.3;
-const START: Point = Point { x_m: 0.0, y_m: 0.0 };
+const START: Point = Point::ORIGIN;
 
 /// Least factor by which q grows from the start to the end of a recovery. In a passage as wide as
 /// the robot, q doubles in 0.1 m.

@@ -47,8 +47,9 @@ const REACHED_M: f32 = 0.015;
 const REACHED_RAD: f32 = 0.04;
 /// Turn for a metre of distance from the track, radians.
 const BACK_ON_TRACK: f32 = 3.0;
-/// Greatest speeds back along the track.
-const BACK_MPS: f32 = 0.15;
+/// Greatest speed of a robot that backs where it looks the other way, metres per second.
+pub(crate) const BACK_MPS: f32 = 0.15;
+/// Greatest turn rate back along the track, radians per second.
 const BACK_RADPS: f32 = 0.5;
 
 /// The last poses, as a ring of differences.

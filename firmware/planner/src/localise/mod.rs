@@ -59,16 +59,6 @@ use search::Search;
 use slip::{likelier, predictions};
 pub(crate) use symmetric::Symmetric;
 
-/// The pose at the start.
-const ORIGIN: Pose = Pose {
-    x_m: 0.0,
-    y_m: 0.0,
-    z_m: 0.0,
-    roll_rad: 0.0,
-    pitch_rad: 0.0,
-    yaw_rad: 0.0,
-};
-
 /// The localiser's memory.
 #[derive(Debug)]
 pub struct Localiser {
@@ -112,7 +102,7 @@ impl Localiser {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            odom: OdomPose(ORIGIN),
+            odom: OdomPose(Pose::ORIGIN),
             has_odom: false,
             map_from_odom: MapFromOdom::IDENTITY,
             covariance: Symmetric::ZERO,
@@ -129,6 +119,12 @@ impl Localiser {
     #[must_use]
     pub fn odom(&self) -> OdomPose {
         self.odom
+    }
+
+    /// Returns the robot's pose in the map.
+    #[must_use]
+    pub fn pose(&self) -> MapPose {
+        self.to_map(&self.odom)
     }
 
     /// Returns a pose of the odometry in the map, with the last correction.
@@ -167,7 +163,7 @@ impl Localiser {
     pub fn location(&self) -> Location {
         let p = &self.covariance;
         Location {
-            pose: self.to_map(&self.odom()),
+            pose: self.pose(),
             covariance: [p.xx, p.xy, p.yy, p.xt, p.yt, p.tt],
             quality: self.quality,
         }
@@ -298,17 +294,7 @@ impl Localiser {
         let predicted = &predicted;
         self.trusted_steps = self.trusted_steps.saturating_sub(1);
         self.unjudged_steps = self.unjudged_steps.saturating_sub(1);
-        // A beam may end on ground that is free, so nothing contradicts the map there.
-        let is_doubtful = if is_uneven || self.unjudged_steps > 0 {
-            false
-        } else if self.trusted_steps > 0 {
-            found.agreement.is_refuted(tuning)
-        } else {
-            found
-                .agreement
-                .is_contradicted(self.contradicted > 0, tuning)
-        };
-        if !is_doubtful {
+        if !self.is_doubtful(&found, is_uneven, tuning) {
             return self.accept(&found, predicted);
         }
         if self.is_lost() {
@@ -320,6 +306,19 @@ impl Localiser {
             self.footing = Footing::Lost(Search::new());
         }
         *predicted
+    }
+
+    /// Returns true if an alignment contradicts the map. On uneven ground none does, because a beam
+    /// may end on ground that is free, nor after the map forgot what stands.
+    fn is_doubtful(&self, found: &Aligned, is_uneven: bool, tuning: &LocaliseTuning) -> bool {
+        let agreement = &found.agreement;
+        if is_uneven || self.unjudged_steps > 0 {
+            false
+        } else if self.trusted_steps > 0 {
+            agreement.is_refuted(tuning)
+        } else {
+            agreement.is_contradicted(self.contradicted > 0, tuning)
+        }
     }
 
     /// Takes an alignment for the pose.

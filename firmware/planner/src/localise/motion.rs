@@ -20,7 +20,7 @@ pub(super) struct Motion {
 impl Motion {
     /// No motion.
     pub(super) const NONE: Self = Self {
-        shift: Point { x_m: 0.0, y_m: 0.0 },
+        shift: Point::ORIGIN,
         turn_rad: 0.0,
     };
 

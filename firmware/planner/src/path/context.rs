@@ -66,6 +66,37 @@ pub(crate) struct PlanningContext<'a, const TILES: usize, const SLOTS: usize> {
     pub(crate) openings_were_tried: bool,
 }
 
+#[cfg(test)]
+impl<'a, const TILES: usize, const SLOTS: usize> PlanningContext<'a, TILES, SLOTS> {
+    /// Returns the inputs of a robot alone at the origin, for tests.
+    pub(crate) fn on(
+        skeleton: &'a mut Skeleton<SLOTS>,
+        tiles: &'a Tiles<TILES, SLOTS>,
+        footprint: &'a Footprint,
+        limits: &'a LoopLimits,
+    ) -> Self {
+        Self {
+            skeleton,
+            tiles,
+            footprint,
+            disc: footprint,
+            blocked: &crate::path::blocked_passages::NONE,
+            pose: Pose::ORIGIN,
+            time_ms: 0,
+            limits,
+            goal_level: None,
+            order: GoalOrder::new(crate::config::Order::ALL, &Tuning::DEFAULT.order),
+            tuning: &Tuning::DEFAULT,
+            levels: None,
+            team: None,
+            must_wait: false,
+            came_through_blocked: false,
+            known_cells: 0,
+            openings_were_tried: false,
+        }
+    }
+}
+
 impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {
     /// Returns the centre cells; `None` before the first skeleton.
     pub(crate) fn centres(&self) -> Option<Centres<'_, TILES, SLOTS>> {

@@ -20,25 +20,20 @@
 //!
 //! Units: map cells.
 
+mod look;
+
 use crate::geometry::Cell;
 use crate::grid::Tiling;
-use crate::map::neighbourhood::Neighbourhood;
-use crate::map::{Class, Tiles};
+use crate::map::Tiles;
 use crate::path::blocked_passages::BlockedPassages;
 use crate::path::gain::View;
-use crate::path::rays::{RAYS, along, ray};
 use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::utility::{GoalOrder, utility};
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::Reachability;
 use crate::roadmap::skeleton::Frame;
+use look::look_back;
 
-/// Minimum number of unexplored cells at a ray's end, 0.5 m: fewer are hardly worth the way.
-const LEAST_BEYOND: i32 = 5;
-/// Maximum length of a ray beyond the gap and back from it, cells. A laser of 8 m sees farther,
-/// only little of it is behind the gap.
-const MOST_ON: i32 = 30;
-const MOST_BACK: i32 = 60;
 /// Side of a block, cells. A block is searched at once.
 const BLOCK: i32 = 8;
 /// Blocks along a tile's side.
@@ -347,57 +342,6 @@ fn cells(rows: &[u32], corner: Cell) -> impl Iterator<Item = Cell> + '_ {
             y: corner.y + y as i32,
         })
     })
-}
-
-/// Returns the viewpoint of a gap whose stand is nearest to it.
-fn look_back<const TILES: usize, const SLOTS: usize>(
-    tiles: &Tiles<TILES, SLOTS>,
-    reachability: &Reachability<'_>,
-    gap: Cell,
-    walked: &mut i32,
-) -> Option<Viewpoint> {
-    let mut best: Option<(i32, Viewpoint)> = None;
-    let mut is_reached = reachability.is_reached();
-    // A ray's cells lie in few tiles.
-    let mut near = Neighbourhood::of(tiles);
-    for ray in (0..RAYS).map(ray) {
-        let Some(beyond) = look_on((tiles, &mut near), gap, ray, walked) else {
-            continue;
-        };
-        let most = best.map_or(MOST_BACK, |(back, _)| back - 1);
-        for back in 0..=most {
-            *walked += 1;
-            let stand = along(gap, ray, -back);
-            if near.class(stand) != Class::Free {
-                break;
-            }
-            if is_reached(stand) {
-                best = Some((back, Viewpoint { stand, gap, beyond }));
-                break;
-            }
-        }
-    }
-    best.map(|(_, viewpoint)| viewpoint)
-}
-
-/// Returns the middle one of the unexplored cells at a ray's end; `None` if there are too few, or
-/// the map has no room for it.
-fn look_on<const TILES: usize, const SLOTS: usize>(
-    (tiles, near): (&Tiles<TILES, SLOTS>, &mut Neighbourhood<'_, TILES, SLOTS>),
-    gap: Cell,
-    ray: (i32, i32),
-    walked: &mut i32,
-) -> Option<Cell> {
-    let mut is = |class, on| near.class(along(gap, ray, on)) == class;
-    let first = (1..MOST_ON).find(|&on| !is(Class::Free, on))?;
-    *walked += first + 1;
-    let dark = first..first + LEAST_BEYOND;
-    let middle = along(gap, ray, first + LEAST_BEYOND / 2);
-    let has_room = tiles.room(middle.x >> 5, middle.y >> 5).is_ok()
-        && dark
-            .clone()
-            .all(|on| tiles.fence().allows(along(gap, ray, on)));
-    (has_room && dark.into_iter().all(|on| is(Class::Unknown, on))).then_some(middle)
 }
 
 #[cfg(test)]

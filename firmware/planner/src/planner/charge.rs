@@ -3,17 +3,16 @@
 //!
 //! Units: map cells.
 
-use crate::config::Config;
 use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows, SCALES};
 use crate::geometry::Cell;
-use crate::input::Input;
 use crate::path::blocked_passages::NONE;
 use crate::path::nearest::Centres;
 use crate::path::open_stretch::OpenStretch;
 use crate::planner::state::State;
+use crate::planner::step::Step;
 use crate::planner::workspace::Workspace;
-use crate::roadmap::configuration_space::Footprint;
+use crate::strategy::ouroboros::Shield;
 
 /// The local goal on the path.
 struct LocalGoal {
@@ -23,55 +22,38 @@ struct LocalGoal {
     is_closed: bool,
 }
 
-/// Charges the window with the local goal on the path. Returns true if the local grid does not lead
-/// along the path as far as the goal could lie; `None` if there is no goal. It is not inlined, so
-/// that what follows does not pay for the goal's stack.
-#[inline(never)]
-pub(super) fn charge_path<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &State<TILES, SLOTS>,
-    workspace: &mut Workspace,
-    footprint: &Footprint,
-    input: &Input<'_>,
-) -> Option<bool> {
-    let goal = local_goal(config, state, footprint, input, &mut workspace.local_grid)?;
-    charge(workspace, &goal.cells);
-    Some(goal.is_closed)
-}
-
-/// Fills the local grid at the smallest scale that holds a local goal. Returns the goal; `None` if
-/// there is no path, or no scale holds a goal.
-fn local_goal<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &State<TILES, SLOTS>,
-    footprint: &Footprint,
-    input: &Input<'_>,
-    grid: &mut LocalGrid,
-) -> Option<LocalGoal> {
-    let (robot, path) = (input.pose.point(), state.strategy.frontier.path());
-    if path.is_empty() {
-        return None;
+impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
+    /// Charges the window with the local goal on the path. Returns true if the local grid does not
+    /// lead along the path as far as the goal could lie; `None` if there is no goal. It is not
+    /// inlined, so that what follows does not pay for the goal's stack.
+    #[inline(never)]
+    pub(super) fn charge_path(&mut self) -> Option<bool> {
+        let goal = self.local_goal()?;
+        self.workspace.charge(&goal.cells);
+        Some(goal.is_closed)
     }
-    let tiles = state.map.tiles();
-    let ahead = path.ahead_of(robot);
-    SCALES.iter().find_map(|&scale| {
-        let blocked = state.strategy.frontier.blocked();
-        blocked.read(grid, (tiles, footprint), robot.cell(), scale);
-        let shield = state.strategy.shield();
-        let shield = shield.filter(|_| !state.errands.is_going());
-        if let Some(shield) = shield {
-            shield.cells().for_each(|cell| grid.block(cell));
+
+    /// Fills the local grid at the smallest scale that holds a local goal. Returns the goal; `None`
+    /// if there is no path, or no scale holds a goal.
+    fn local_goal(&mut self) -> Option<LocalGoal> {
+        if self.state.strategy.frontier.path().is_empty() {
+            return None;
         }
-        grid.free_robot(robot.cell());
-        state
-            .ground
-            .block_rims(config, tiles, footprint, robot, grid);
+        SCALES.iter().find_map(|&scale| self.local_goal_at(scale))
+    }
+
+    fn local_goal_at(&mut self, scale: i32) -> Option<LocalGoal> {
+        let robot = self.robot();
+        self.read_window(scale, true);
+        let ahead = self.state.strategy.frontier.path().ahead_of(robot);
         // A shield is there to be gone round.
-        let stretch = match shield {
+        let stretch = match self.state.detour() {
             Some(_) => OpenStretch::default(),
-            None => OpenStretch::of(grid, robot.cell(), ahead),
+            None => OpenStretch::of(&self.workspace.local_grid, robot.cell(), ahead),
         };
-        state.block_peers(footprint, input, grid, None);
+        self.block_peers(None);
+        let grid = &self.workspace.local_grid;
+        let ahead = self.state.strategy.frontier.path().ahead_of(robot);
         // A goal behind the open stretch counts only if no cell is open.
         let open = ahead
             .iter()
@@ -82,7 +64,55 @@ fn local_goal<const TILES: usize, const SLOTS: usize>(
             cells,
             is_closed: stretch.is_closed,
         })
-    })
+    }
+
+    /// Reads the window's cells around the robot, without peers, and with or without the shield.
+    #[inline(never)]
+    pub(super) fn read_window(&mut self, scale: i32, shielded: bool) {
+        let (robot, state, grid) = (
+            self.input.pose.point(),
+            &*self.state,
+            &mut self.workspace.local_grid,
+        );
+        let tiles = state.map.tiles();
+        let blocked = state.strategy.frontier.blocked();
+        blocked.read(grid, (tiles, &self.footprint), robot.cell(), scale);
+        if let Some(shield) = state.detour().filter(|_| shielded) {
+            shield.cells().for_each(|cell| grid.block(cell));
+        }
+        grid.free_robot(robot.cell());
+        state
+            .ground
+            .block_rims(self.config, tiles, &self.footprint, robot, grid);
+    }
+
+    /// Charges the window with the strategy's own boundary values. Returns `None` if it has none,
+    /// or if the robot reaches none of them.
+    pub(super) fn charge_rails(&mut self) -> Option<()> {
+        if self.state.errands.is_going() {
+            return None;
+        }
+        self.state.strategy.tdbvp()?;
+        self.read_window(1, false);
+        self.block_peers(None);
+        self.workspace.slide();
+        // Rails search for no way.
+        let (state, robot) = (&mut *self.state, self.input.pose.point());
+        let tiles = state.map.tiles();
+        let centres = Centres::of(&state.skeleton, tiles, &self.footprint, &NONE)?;
+        let window = (&mut self.workspace.window, &self.workspace.local_grid);
+        state
+            .strategy
+            .charge(&centres, robot, window, self.config.tuning)
+    }
+}
+
+impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
+    /// Returns the shield that the robot goes round.
+    fn detour(&self) -> Option<&Shield> {
+        let shield = self.strategy.shield();
+        shield.filter(|_| !self.errands.is_going())
+    }
 }
 
 /// Returns the passable window cells of a coarse cell; `None` if it has none.
@@ -91,63 +121,32 @@ fn goal_cells(grid: &LocalGrid, cell: Cell) -> Option<Rows> {
     grid.mark(&mut rows, cell).then_some(rows)
 }
 
-/// Charges the window with the strategy's own boundary values. Returns `None` if it has none, or if
-/// the robot reaches none of them.
-pub(super) fn charge_rails<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &mut State<TILES, SLOTS>,
-    workspace: &mut Workspace,
-    footprint: &Footprint,
-    input: &Input<'_>,
-) -> Option<()> {
-    if state.errands.is_going() {
-        return None;
+impl Workspace {
+    /// Sets the window's boundary values. The last field stays where the two windows overlap.
+    pub(super) fn charge(&mut self, goal: &Rows) {
+        self.slide();
+        self.window.set_boundary(&self.local_grid.passable, goal);
     }
-    state.strategy.tdbvp()?;
-    let robot = input.pose.point().cell();
-    let local_grid = &mut workspace.local_grid;
-    let (blocked, tiles) = (state.strategy.frontier.blocked(), state.map.tiles());
-    blocked.read(local_grid, (tiles, footprint), robot, 1);
-    local_grid.free_robot(robot);
-    state
-        .ground
-        .block_rims(config, tiles, footprint, input.pose.point(), local_grid);
-    state.block_peers(footprint, input, local_grid, None);
-    slide(workspace);
-    // Rails search for no way.
-    let centres = Centres::of(&state.skeleton, tiles, footprint, &NONE)?;
-    let window = (&mut workspace.window, &workspace.local_grid);
-    state
-        .strategy
-        .charge(&centres, input.pose.point(), window, config.tuning)
-}
 
-/// Sets the window's boundary values. The last field stays where the two windows overlap.
-pub(super) fn charge(workspace: &mut Workspace, goal: &Rows) {
-    slide(workspace);
-    workspace
-        .window
-        .set_boundary(&workspace.local_grid.passable, goal);
-}
-
-/// Moves the window to the local grid's place, together with the field where they overlap.
-fn slide(workspace: &mut Workspace) {
-    let Workspace {
-        window,
-        window_at: at,
-        local_grid,
-        ..
-    } = workspace;
-    match *at {
-        Some((origin, scale)) if scale == local_grid.scale => {
-            let steps = |to: i32, from: i32| (to - from) / scale;
-            window.shift(
-                steps(local_grid.origin.x, origin.x),
-                steps(local_grid.origin.y, origin.y),
-            );
+    /// Moves the window to the local grid's place, together with the field where they overlap.
+    fn slide(&mut self) {
+        let Self {
+            window,
+            window_at: at,
+            local_grid,
+            ..
+        } = self;
+        match *at {
+            Some((origin, scale)) if scale == local_grid.scale => {
+                let steps = |to: i32, from: i32| (to - from) / scale;
+                window.shift(
+                    steps(local_grid.origin.x, origin.x),
+                    steps(local_grid.origin.y, origin.y),
+                );
+            }
+            // A field at another scale is of no use.
+            _ => window.shift(SIDE as i32, 0),
         }
-        // A field at another scale is of no use.
-        _ => window.shift(SIDE as i32, 0),
+        *at = Some((local_grid.origin, local_grid.scale));
     }
-    *at = Some((local_grid.origin, local_grid.scale));
 }

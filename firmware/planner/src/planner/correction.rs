@@ -206,7 +206,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             y_m: correction.y_m,
             yaw_rad: math::wrap(correction.yaw_rad),
         };
-        let MapPose(pose) = self.localiser.to_map(&self.localiser.odom());
+        let MapPose(pose) = self.localiser.pose();
         let Point { x_m, y_m } = motion.point(pose.point());
         let is_near = x_m.abs() <= MOST_M && y_m.abs() <= MOST_M && motion.yaw_rad.is_finite();
         if correction.tiles > MOST_TILES || !is_near {
@@ -294,9 +294,9 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         let (list, _) = list.as_chunks::<2>();
         let list: &[Shift] = list.get(..shifts).unwrap_or_default();
         let shifts = Shifts(list);
-        let MapPose(before) = self.localiser.to_map(&self.localiser.odom());
+        let MapPose(before) = self.localiser.pose();
         self.localiser.correct_pose(&motion);
-        let MapPose(pose) = self.localiser.to_map(&self.localiser.odom());
+        let MapPose(pose) = self.localiser.pose();
         self.map.end_correction(before.point(), pose.point());
         for &word in trail.iter().take(blocks) {
             self.map.mark_trail(unpack(word));

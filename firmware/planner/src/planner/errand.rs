@@ -27,20 +27,16 @@
 
 mod approach;
 
-pub(super) use approach::approach;
-
 use crate::config::Config;
 use crate::geometry::{CELL_M, Cell, MapFromOdom, MapPose, OdomPose, Point, Pose};
 use crate::grid::Shifts;
-use crate::input::Input;
 use crate::math;
 use crate::path::context::STEP_M;
 use crate::path::nearest::Centres;
 use crate::path::search::path_between;
-use crate::path::{PlanningScratch, viewpoint};
+use crate::path::viewpoint;
 use crate::planner::state::State;
-use crate::planner::workspace::Workspace;
-use crate::roadmap::configuration_space::Footprint;
+use crate::planner::step::Step;
 use crate::status::{Errand, Fault, Status};
 
 /// Greatest coordinate of a goal, metres: as of a fence.
@@ -128,10 +124,13 @@ impl Going {
     /// Returns true if a robot at `pose` is where the errand promises to take it.
     fn is_promised(&self, pose: &Pose) -> bool {
         let (near_m, near_rad) = PROMISED;
-        let off_rad = self
-            .yaw_rad
-            .map_or(0.0, |yaw| math::wrap(yaw - pose.yaw_rad));
-        pose.point().distance_m(self.to) <= near_m && off_rad.abs() <= near_rad
+        pose.point().distance_m(self.to) <= near_m && self.error_rad(pose).abs() <= near_rad
+    }
+
+    /// Returns the turn to the heading that the errand asks for, radians; 0 if it asks for none.
+    fn error_rad(&self, pose: &Pose) -> f32 {
+        self.yaw_rad
+            .map_or(0.0, |yaw| math::wrap(yaw - pose.yaw_rad))
     }
 }
 
@@ -139,26 +138,19 @@ impl Errands {
     /// Returns the state at the start of a session.
     pub(super) const fn new() -> Self {
         Self {
-            home: Pose {
-                x_m: 0.0,
-                y_m: 0.0,
-                z_m: 0.0,
-                roll_rad: 0.0,
-                pitch_rad: 0.0,
-                yaw_rad: 0.0,
-            },
+            home: Pose::ORIGIN,
             is_home_set: false,
             is_going: false,
             last: Going {
                 errand: Errand::Home,
-                to: Point { x_m: 0.0, y_m: 0.0 },
+                to: Point::ORIGIN,
                 yaw_rad: None,
                 is_there: false,
                 straight_rad: None,
                 turned_ms: 0,
             },
             driven_m: 0.0,
-            driven_to: Point { x_m: 0.0, y_m: 0.0 },
+            driven_to: Point::ORIGIN,
             measured_m: (0.0, 0.0),
             is_due: false,
         }
@@ -344,7 +336,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
 
     /// Ends the errand: the robot is there, or cannot get nearer.
     pub(super) fn end_errand(&mut self, arrived: bool) {
-        let MapPose(pose) = self.localiser.to_map(&self.localiser.odom());
+        let MapPose(pose) = self.localiser.pose();
         if let Some(going) = self.errands.going() {
             let errand = going.errand;
             self.errands.is_going = false;
@@ -370,27 +362,19 @@ fn is_near(place: Point) -> bool {
     place.x_m.abs() <= MOST_M && place.y_m.abs() <= MOST_M
 }
 
-/// Measures the way home on the published skeleton. Without one the robot knows its track.
-#[inline(never)]
-pub(super) fn measure_way_home<const TILES: usize, const SLOTS: usize>(
-    state: &mut State<TILES, SLOTS>,
-    workspace: &mut Workspace,
-    footprint: &Footprint,
-    input: &Input<'_>,
-) {
-    let words: &mut [u32] = bytemuck::cast_slice_mut(&mut workspace.scratch);
-    let (residues, queue) = words.split_at_mut(SLOTS * 16);
-    let (residues, _) = residues.as_chunks_mut::<2>();
-    let mut scratch = PlanningScratch {
-        residues,
-        queue,
-        local_grid: &mut workspace.local_grid,
-    };
-    let blocked = state.strategy.frontier.blocked();
-    let centres = Centres::of(&state.skeleton, state.map.tiles(), footprint, blocked);
-    let (robot, home) = (input.pose.point().cell(), state.errands.home.point().cell());
-    let path = centres.and_then(|centres| path_between(robot, home, centres, &mut scratch));
-    if let Some(path) = path {
-        state.errands.measured_m = (path.steps() as f32 * STEP_M, state.errands.driven_m);
+impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
+    /// Measures the way home on the published skeleton. Without one the robot knows its track.
+    #[inline(never)]
+    pub(super) fn measure_way_home(&mut self) {
+        let (robot, state) = (self.robot().cell(), &mut *self.state);
+        let (tiles, blocked) = (state.map.tiles(), state.strategy.frontier.blocked());
+        let Some(centres) = Centres::of(&state.skeleton, tiles, &self.footprint, blocked) else {
+            return;
+        };
+        let home = state.errands.home.point().cell();
+        let mut scratch = self.workspace.planning(SLOTS);
+        if let Some(path) = path_between(robot, home, centres, &mut scratch) {
+            state.errands.measured_m = (path.steps() as f32 * STEP_M, state.errands.driven_m);
+        }
     }
 }

@@ -32,7 +32,7 @@ use crate::robot::RobotShape;
 use crate::team::hull::Hull;
 use crate::team::peers::{MOST_PEERS, Peers};
 
-use crate::planner::level_scans;
+use crate::planner::sense::level_scans;
 
 /// A goal whose height differs by less lies level with the robot, metres: twice the rounding of a
 /// block of heights.

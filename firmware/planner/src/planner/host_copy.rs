@@ -46,6 +46,6 @@ pub fn without_peers<const TILES: usize, const SLOTS: usize>(
     let time_ms = state.team.now_ms();
     let mut seen = [const { Ranges::new() }; 2];
     let input = &Input { time_ms, ..*input };
-    hide_peers(config, state.team.peers(), (input, &at), &mut seen);
+    hide_peers(config, state.team.peers(), input, &at, &mut seen);
     seen
 }

@@ -10,16 +10,13 @@
 //!
 //! Units: metres, milliseconds; window cells.
 
-use crate::config::Config;
 use crate::field::SIDE;
 use crate::field::local_grid::{LocalGrid, Rows};
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::bits::ones64;
-use crate::input::Input;
 use crate::math;
-use crate::planner::charge::charge;
 use crate::planner::state::State;
-use crate::planner::workspace::Workspace;
+use crate::planner::step::Step;
 use crate::roadmap::configuration_space::Footprint;
 use crate::team::peers::Peer;
 use crate::team::right_of_way::{Road, Stance, distance2, road_of, waits_for};
@@ -47,23 +44,6 @@ pub(super) enum Way {
 }
 
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
-    /// Makes the places of the peers, or only of one, impassable in a window at scale 1.
-    #[inline(never)]
-    pub(super) fn block_peers(
-        &self,
-        footprint: &Footprint,
-        input: &Input<'_>,
-        grid: &mut LocalGrid,
-        only: Option<u8>,
-    ) {
-        let robot = input.pose.point();
-        for (id, hull) in self.team.peers().turning(input.time_ms, robot) {
-            if only.is_none_or(|only| only == id) {
-                grid.keep_off(robot.cell(), hull.area(), footprint);
-            }
-        }
-    }
-
     /// Takes the places of peers that stand out of the published skeleton. Returns true if one of
     /// them may drive away: then what lies behind it is not given up.
     pub(super) fn cut_peers(&mut self, footprint: &Footprint, now_ms: u32) -> bool {
@@ -80,113 +60,117 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     }
 }
 
-/// Decides whether the robot drives on, stands, or makes way.
-#[inline(never)]
-pub(super) fn make_way<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &mut State<TILES, SLOTS>,
-    workspace: &mut Workspace,
-    footprint: &Footprint,
-    input: &Input<'_>,
-) -> Way {
-    let (now_ms, robot) = (input.time_ms, input.pose.point());
-    let has_lost_patience = state.team.way.loses_patience(now_ms);
-    let meets = state.team.meets(now_ms, robot, |_| true).is_some();
-    if !meets || has_lost_patience {
-        state.team.way.go_on();
-        return Way::Free;
-    }
-    let off_m = off_road_m(config);
-    let other = state.team.way.other(state.team.peers(), now_ms).cloned();
-    if let Some(other) = other.filter(|other| state.team.still_yields_to(other)) {
-        if distance2(&road_near(&other, now_ms, robot), robot) < off_m * off_m {
-            state.team.way.take(Stance::Yielding, &other, now_ms);
-            return retreat(config, state, workspace, footprint, (&other, input));
-        }
-        if crosses(state, robot, &road_of(&other, now_ms), off_m) {
-            state.team.way.take(Stance::Yielding, &other, now_ms);
-            state.team.way.go_to(None);
-            return Way::Hold;
+impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
+    /// Makes the places of the peers, or only of one, impassable in a window at scale 1.
+    #[inline(never)]
+    pub(super) fn block_peers(&mut self, only: Option<u8>) {
+        let (robot, time_ms) = (self.input.pose.point(), self.input.time_ms);
+        let grid = &mut self.workspace.local_grid;
+        for (id, hull) in self.state.team.peers().turning(time_ms, robot) {
+            if only.is_none_or(|only| only == id) {
+                grid.keep_off(robot.cell(), hull.area(), &self.footprint);
+            }
         }
     }
-    let is_shut = state.team.way.is_shut();
-    if !is_shut && !is_blocked(config, state, workspace, footprint, input) {
-        state.team.way.go_on();
-        return Way::Free;
+
+    /// Decides whether the robot drives on, stands, or makes way.
+    #[inline(never)]
+    pub(super) fn make_way(&mut self) -> Way {
+        let (now_ms, robot, off_m) = (self.input.time_ms, self.robot(), self.off_road_m());
+        let team = &mut self.state.team;
+        let has_lost_patience = team.way.loses_patience(now_ms);
+        let meets = team.meets(now_ms, robot, |_| true).is_some();
+        if !meets || has_lost_patience {
+            team.way.go_on();
+            return Way::Free;
+        }
+        let other = team.way.other(team.peers(), now_ms).cloned();
+        if let Some(other) = other.filter(|other| team.still_yields_to(other)) {
+            if distance2(&road_near(&other, now_ms, robot), robot) < off_m * off_m {
+                return self.yield_to(&other);
+            }
+            if self.crosses(&road_of(&other, now_ms)) {
+                let team = &mut self.state.team;
+                team.way.take(Stance::Yielding, &other, now_ms);
+                team.way.go_to(None);
+                return Way::Hold;
+            }
+        }
+        if !self.state.team.way.is_shut() && !self.is_blocked() {
+            self.state.team.way.go_on();
+            return Way::Free;
+        }
+        let is_in_its_way = |peer: &Peer| {
+            waits_for(peer, now_ms, robot)
+                || distance2(&road_of(peer, now_ms), robot) < off_m * off_m
+        };
+        let team = &mut self.state.team;
+        if let Some(peer) = team.meets(now_ms, robot, is_in_its_way).cloned()
+            && team.is_before_me(&peer)
+        {
+            return self.yield_to(&peer);
+        }
+        if let Some(peer) = team.meets(now_ms, robot, |_| true).cloned() {
+            team.way.take(Stance::Holding, &peer, now_ms);
+        }
+        Way::Hold
     }
-    let is_in_its_way = |peer: &Peer| {
-        waits_for(peer, now_ms, robot) || distance2(&road_of(peer, now_ms), robot) < off_m * off_m
-    };
-    if let Some(peer) = state.team.meets(now_ms, robot, is_in_its_way).cloned()
-        && state.team.is_before_me(&peer)
-    {
-        state.team.way.take(Stance::Yielding, &peer, now_ms);
-        return retreat(config, state, workspace, footprint, (&peer, input));
+
+    /// Returns the distance from a road at which the robot is out of the way, metres: then a peer's
+    /// planning disc, whose radius is as this robot's, passes the hull.
+    fn off_road_m(&self) -> f32 {
+        self.config.robot.half_diagonal_m + self.config.robot_radius_m + ROOM_M
     }
-    if let Some(peer) = state.team.meets(now_ms, robot, |_| true).cloned() {
-        state.team.way.take(Stance::Holding, &peer, now_ms);
+
+    /// Returns true if the robot's own road comes near the road of a peer.
+    fn crosses(&self, road: &Road) -> bool {
+        let (robot, off_m) = (self.robot(), self.off_road_m());
+        let cells = self.state.strategy.frontier.path().cells().iter();
+        let ahead = cells.map(|cell| cell.offset(1, 1).corner());
+        ahead
+            .take_while(|place| place.distance2(robot) <= OWN_ROAD_M * OWN_ROAD_M)
+            .any(|place| distance2(road, place) < off_m * off_m)
     }
-    Way::Hold
-}
 
-/// Returns the distance from a road at which the robot is out of the way, metres: then a peer's
-/// planning disc, whose radius is as this robot's, passes the hull.
-fn off_road_m(config: &Config) -> f32 {
-    config.robot.half_diagonal_m + config.robot_radius_m + ROOM_M
-}
+    /// Returns true if the local goal that can be reached without the peers cannot with them.
+    fn is_blocked(&mut self) -> bool {
+        let robot = self.robot();
+        self.read_window(1, false);
+        let leads = |grid: &LocalGrid, cell: Cell| {
+            let mut goal: Rows = [0; SIDE];
+            grid.mark(&mut goal, cell) && has_any(&common(&goal, &reached(grid, robot)))
+        };
+        let path = self.state.strategy.frontier.path();
+        let mut ahead = path.ahead_of(robot).iter().rev().copied();
+        let goal = ahead.find(|&cell| leads(&self.workspace.local_grid, cell));
+        self.block_peers(None);
+        goal.is_some_and(|cell| !leads(&self.workspace.local_grid, cell))
+    }
 
-/// Returns true if the robot's own road comes near the road of a peer.
-fn crosses<const TILES: usize, const SLOTS: usize>(
-    state: &State<TILES, SLOTS>,
-    robot: Point,
-    road: &Road,
-    off_m: f32,
-) -> bool {
-    let cells = state.strategy.frontier.path().cells().iter();
-    let ahead = cells.map(|cell| cell.offset(1, 1).corner());
-    ahead
-        .take_while(|place| place.distance2(robot) <= OWN_ROAD_M * OWN_ROAD_M)
-        .any(|place| distance2(road, place) < off_m * off_m)
-}
-
-/// Reads the window without peers.
-#[inline(never)]
-fn fill_grid<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &State<TILES, SLOTS>,
-    grid: &mut LocalGrid,
-    footprint: &Footprint,
-    robot: Point,
-) {
-    let tiles = state.map.tiles();
-    let blocked = state.strategy.frontier.blocked();
-    blocked.read(grid, (tiles, footprint), robot.cell(), 1);
-    grid.free_robot(robot.cell());
-    state
-        .ground
-        .block_rims(config, tiles, footprint, robot, grid);
-}
-
-/// Returns true if the local goal that can be reached without the peers cannot with them.
-fn is_blocked<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &State<TILES, SLOTS>,
-    workspace: &mut Workspace,
-    footprint: &Footprint,
-    input: &Input<'_>,
-) -> bool {
-    let robot = input.pose.point();
-    let grid = &mut workspace.local_grid;
-    fill_grid(config, state, grid, footprint, robot);
-    let leads = |grid: &LocalGrid, cell: Cell| {
-        let mut goal: Rows = [0; SIDE];
-        grid.mark(&mut goal, cell) && has_any(&common(&goal, &reached(grid, robot)))
-    };
-    let path = state.strategy.frontier.path();
-    let mut ahead = path.ahead_of(robot).iter().rev().copied();
-    let goal = ahead.find(|&cell| leads(grid, cell));
-    state.block_peers(footprint, input, grid, None);
-    goal.is_some_and(|cell| !leads(grid, cell))
+    /// Leads the robot off the road of a peer. It is cornered if no cell off the road can be
+    /// reached; where others stand in its way, its own road tells them so.
+    fn yield_to(&mut self, peer: &Peer) -> Way {
+        let (now_ms, robot) = (self.input.time_ms, self.robot());
+        self.state.team.way.take(Stance::Yielding, peer, now_ms);
+        self.read_window(1, false);
+        self.block_peers(Some(peer.member.id));
+        let mut off_road = reached(&self.workspace.local_grid, robot);
+        let road = road_near(peer, now_ms, robot);
+        let radius_m = self.off_road_m() + BEYOND_M;
+        clear_road(&self.workspace.local_grid, &mut off_road, &road, radius_m);
+        self.block_peers(None);
+        let grid = &self.workspace.local_grid;
+        let goal = common(&off_road, &reached(grid, robot));
+        let can_leave = has_any(&goal);
+        let aim = if can_leave { &goal } else { &off_road };
+        self.state.team.way.go_to(nearest(grid, aim, robot));
+        if can_leave {
+            self.workspace.charge(&goal);
+            return Way::Retreat;
+        }
+        self.state.team.way.corner();
+        Way::Hold
+    }
 }
 
 /// Returns the cells that the robot can reach.
@@ -204,35 +188,6 @@ fn common(one: &Rows, other: &Rows) -> Rows {
 
 fn has_any(rows: &Rows) -> bool {
     rows.iter().any(|row| *row != 0)
-}
-
-/// Leads the robot off the road of a peer. It is cornered if no cell off the road can be reached;
-/// where others stand in its way, its own road tells them so.
-fn retreat<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &mut State<TILES, SLOTS>,
-    workspace: &mut Workspace,
-    footprint: &Footprint,
-    (peer, input): (&Peer, &Input<'_>),
-) -> Way {
-    let (now_ms, robot) = (input.time_ms, input.pose.point());
-    let grid = &mut workspace.local_grid;
-    fill_grid(config, state, grid, footprint, robot);
-    state.block_peers(footprint, input, grid, Some(peer.member.id));
-    let mut off_road = reached(grid, robot);
-    let road = road_near(peer, now_ms, robot);
-    clear_road(grid, &mut off_road, &road, off_road_m(config) + BEYOND_M);
-    state.block_peers(footprint, input, grid, None);
-    let goal = common(&off_road, &reached(grid, robot));
-    let can_leave = has_any(&goal);
-    let aim = if can_leave { &goal } else { &off_road };
-    state.team.way.go_to(nearest(grid, aim, robot));
-    if can_leave {
-        charge(workspace, &goal);
-        return Way::Retreat;
-    }
-    state.team.way.corner();
-    Way::Hold
 }
 
 /// Returns the road of a peer as far as the robot, and [`BEHIND_M`] more: the window ends soon

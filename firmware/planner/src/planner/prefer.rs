@@ -9,35 +9,48 @@ use crate::field::local_grid::{LocalGrid, Rows};
 use crate::field::preference::p_diff;
 use crate::field::{Preference, SIDE, Window, descent};
 use crate::ground::Heights;
-use crate::input::Input;
-use crate::planner::state::State;
+use crate::planner::step::Step;
 use crate::planner::workspace::Workspace;
 
-/// Adds the preference of \[Maffei20, eqs. 3 to 5\] to the strategy's own in every cell of the
-/// window.
-pub(super) fn prefer<const TILES: usize, const SLOTS: usize>(
-    ground: &UnevenGround,
-    state: &State<TILES, SLOTS>,
-    workspace: &mut Workspace,
-    input: &Input<'_>,
-) {
-    let heights = state.map.heights();
-    let global = state.preferences.global(ground);
-    let has_sides = state.strategy.tdbvp().is_some();
-    let Workspace {
-        window, local_grid, ..
-    } = workspace;
-    let crossed = crossed(ground, &heights, window, local_grid);
-    window.change_preferences(|x, y, old| {
-        if LocalGrid::has(&crossed, (x, y)) {
-            return Preference::nearest(ground.least_preference);
+impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
+    /// Adds the preference of \[Maffei20, eqs. 3 to 5\] to the strategy's own in every cell of the
+    /// window. Flat ground has none.
+    pub(super) fn prefer(&mut self) {
+        let Some(ground) = &self.config.ground else {
+            return;
+        };
+        let heights = self.state.map.heights();
+        let preferences = &self.state.preferences;
+        let global = preferences.global(ground);
+        let has_sides = self.state.strategy.tdbvp().is_some();
+        let Workspace {
+            window, local_grid, ..
+        } = &mut *self.workspace;
+        let crossed = crossed(ground, &heights, window, local_grid);
+        window.change_preferences(|x, y, old| {
+            if LocalGrid::has(&crossed, (x, y)) {
+                return Preference::nearest(ground.least_preference);
+            }
+            let height_m = heights.height_m(local_grid.cell(x, y));
+            let difference_m = height_m.map(|height_m| height_m - self.input.pose.z_m);
+            let epsilon = preferences.of_cell(ground, global, difference_m);
+            let side = if has_sides { old.get().to_num() } else { 0.0 };
+            Preference::nearest(epsilon + side)
+        });
+    }
+
+    /// Notes how flat the solved field is around the robot: the next preferences depend on it.
+    pub(super) fn note_flatness(&mut self) {
+        let Workspace {
+            window, local_grid, ..
+        } = &*self.workspace;
+        let place = local_grid.place(self.input.pose.point().cell());
+        if self.state.ground.is_uneven()
+            && let Some((x, y)) = place.filter(|&(x, y)| window.is_reached(x, y))
+        {
+            self.state.preferences.note(p_diff(window, x, y));
         }
-        let height_m = heights.height_m(local_grid.cell(x, y));
-        let difference_m = height_m.map(|height_m| height_m - input.pose.z_m);
-        let epsilon = state.preferences.of_cell(ground, global, difference_m);
-        let side = if has_sides { old.get().to_num() } else { 0.0 };
-        Preference::nearest(epsilon + side)
-    });
+    }
 }
 
 /// Returns the cells in which the last field leads across a slope that the robot must not cross.
@@ -65,16 +78,4 @@ fn crossed(
         }
     }
     rows
-}
-
-/// Notes how flat the solved field is around the robot: the next preferences depend on it.
-pub(super) fn note_flatness<const TILES: usize, const SLOTS: usize>(
-    state: &mut State<TILES, SLOTS>,
-    workspace: &Workspace,
-    input: &Input<'_>,
-) {
-    let place = workspace.local_grid.place(input.pose.point().cell());
-    if let Some((x, y)) = place.filter(|&(x, y)| workspace.window.is_reached(x, y)) {
-        state.preferences.note(p_diff(&workspace.window, x, y));
-    }
 }

@@ -12,7 +12,6 @@ use heapless::Vec;
 use crate::config::Config;
 use crate::geometry::{MapPose, Pose};
 use crate::input::{INVALID_MM, Input, informative_range_mm};
-use crate::planner::sense;
 use crate::planner::state::State;
 use crate::robot::MAX_BEAMS;
 use crate::team::peers::Peers;
@@ -24,34 +23,55 @@ const BEFORE_PEER_MM: u16 = 200;
 /// The ranges of a scan.
 pub(super) type Ranges = Vec<u16, { MAX_BEAMS as usize }>;
 
-/// Locates the robot and enters scans and odometry, without the beams that end in a peer as seen
-/// from the pose that odometry tells. Not inlined: its scans lie on the stack only while the
-/// planner senses.
-#[inline(never)]
-pub(super) fn sense_without_peers<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &mut State<TILES, SLOTS>,
-    (input, expected): (&Input<'_>, &Pose),
-) -> MapPose {
-    let mut seen = [const { Ranges::new() }; 2];
-    hide_peers(config, state.team.peers(), (input, expected), &mut seen);
-    let [first, second] = &seen;
-    let without_peers = Input {
-        scans: [first, second],
-        ..*input
-    };
-    let MapPose(pose) = sense(config, state, &without_peers);
-    if !state.ground.is_uneven() && state.localiser.may_enter() {
-        free_before_peers(config, state, &Input { pose, ..*input }, &seen);
+impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
+    /// Locates the robot and enters scans and odometry, without the beams that end in a peer as
+    /// seen from the pose that odometry tells. Not inlined: its scans lie on the stack only while
+    /// the planner senses.
+    #[inline(never)]
+    pub(super) fn enter_without_peers(
+        &mut self,
+        config: &Config,
+        input: &Input<'_>,
+        expected: &Pose,
+    ) -> MapPose {
+        let mut seen = [const { Ranges::new() }; 2];
+        hide_peers(config, self.team.peers(), input, expected, &mut seen);
+        let [first, second] = &seen;
+        let without_peers = Input {
+            scans: [first, second],
+            ..*input
+        };
+        let MapPose(pose) = self.enter(config, &without_peers);
+        if !self.ground.is_uneven() && self.localiser.may_enter() {
+            self.free_before_peers(config, &Input { pose, ..*input }, &seen);
+        }
+        MapPose(pose)
     }
-    MapPose(pose)
+
+    /// Frees the cells before the peers, along the beams of the level lasers that were hidden.
+    fn free_before_peers(&mut self, config: &Config, input: &Input<'_>, seen: &[Ranges; 2]) {
+        let scans = config.lasers.iter().zip(input.scans.iter().zip(seen));
+        for (laser, (scan, seen)) in scans.filter(|(laser, _)| laser.is_level()) {
+            for (number, (&range_mm, &seen_mm)) in scan.iter().zip(seen).enumerate() {
+                let was_hidden = seen_mm == INVALID_MM && range_mm < laser.range_limit_mm;
+                let free_mm = range_mm.checked_sub(BEFORE_PEER_MM);
+                let Some(free_mm) = free_mm.filter(|_| was_hidden) else {
+                    continue;
+                };
+                let beam = (number, f32::from(free_mm) * 1e-3);
+                let tuning = &config.tuning.map;
+                self.map.free_view(tuning, &input.pose, laser, beam);
+            }
+        }
+    }
 }
 
 /// Copies the ranges of an input but those of beams that end in a peer.
 pub(super) fn hide_peers(
     config: &Config,
     peers: &Peers,
-    (input, expected): (&Input<'_>, &Pose),
+    input: &Input<'_>,
+    expected: &Pose,
     seen: &mut [Ranges; 2],
 ) {
     for ((laser, scan), seen) in config.lasers.iter().zip(input.scans).zip(seen) {
@@ -63,38 +83,15 @@ pub(super) fn hide_peers(
     }
 }
 
-/// Frees the cells before the peers, along the beams of the level lasers that were hidden.
-fn free_before_peers<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &mut State<TILES, SLOTS>,
-    input: &Input<'_>,
-    seen: &[Ranges; 2],
-) {
-    let scans = config.lasers.iter().zip(input.scans.iter().zip(seen));
-    for (laser, (scan, seen)) in scans.filter(|(laser, _)| laser.is_level()) {
-        for (number, (&range_mm, &seen_mm)) in scan.iter().zip(seen).enumerate() {
-            let was_hidden = seen_mm == INVALID_MM && range_mm < laser.range_limit_mm;
-            let Some(free_mm) = range_mm.checked_sub(BEFORE_PEER_MM).filter(|_| was_hidden) else {
-                continue;
-            };
-            let beam = (number, f32::from(free_mm) * 1e-3);
-            let tuning = &config.tuning.map;
-            state.map.free_view(tuning, &input.pose, laser, beam);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::boxed::Box;
 
-    use super::sense_without_peers;
     use crate::config::{Config, Member, TeamPlace};
     use crate::geometry::{Cell, MapPose, Point, Pose, Twist};
     use crate::input::{INVALID_MM, Input};
     use crate::map::Class;
     use crate::planner::ground_model::GroundModel;
-    use crate::planner::note_surroundings;
     use crate::planner::state::State;
     use crate::robot::{LaserMount, RobotShape};
     use crate::team::packet::{Beacon, Body, Packet};
@@ -160,11 +157,11 @@ mod tests {
             let mut ranges_mm = core::array::from_fn(room_mm);
             for step in 0..3 {
                 let input = input(200 * step, 0.0, &ranges_mm);
-                sense_without_peers(&config, &mut state, (&input, &input.pose));
+                state.enter_without_peers(&config, &input, &input.pose);
             }
             ranges_mm[90..95].fill(peer_mm);
             let input = input(600, 0.05, &ranges_mm);
-            sense_without_peers(&config, &mut state, (&input, &input.pose))
+            state.enter_without_peers(&config, &input, &input.pose)
         };
         let MapPose(without) = located(INVALID_MM);
         assert!(without.yaw_rad.abs() < 0.02, "{without:?}");
@@ -183,8 +180,8 @@ mod tests {
         let mut state = state_beside_peer(&config, 1.6);
         let ranges_mm = [900; 181];
         let input = input(2_000, 0.0, &ranges_mm);
-        sense_without_peers(&config, &mut state, (&input, &input.pose));
-        note_surroundings(&config, &mut state, &input);
+        state.enter_without_peers(&config, &input, &input.pose);
+        state.note_surroundings(&config, &input);
         // Ahead, and to the left, where no peer is.
         let is_wall = |x, y| state.map.tiles().class(Cell { x, y }) == Class::Obstacle;
         assert!(!(8..12).any(|x| is_wall(x, 0)));

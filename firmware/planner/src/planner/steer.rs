@@ -2,17 +2,15 @@
 //!
 //! Units: metres, seconds, radians; milliseconds where a name says so.
 
-use crate::config::Config;
 use crate::doing::Doing;
-use crate::drive::side_slope::Hysteresis;
+use crate::drive::side_slope::{Hysteresis, SlopeDirection};
 use crate::drive::{CollisionChecker, Incline, Place, SearchQuery};
 use crate::field::local_grid;
 use crate::field::{Window, descent};
-use crate::geometry::{CELL_M, Cell, MapPose, Point, Pose, Twist};
-use crate::input::Input;
+use crate::geometry::{CELL_M, Cell, MapPose, Pose, Twist};
 use crate::math;
 use crate::planner::Output;
-use crate::planner::state::State;
+use crate::planner::step::Step;
 use crate::planner::workspace::Workspace;
 
 /// The period of looking around, milliseconds: the time of half a turn.
@@ -21,74 +19,129 @@ const LOOK_PERIOD_MS: u32 = 5_000;
 /// blocked.
 const STALLED_PERIODS: u32 = 5;
 
-/// Returns the velocity that follows the window's field, or the heading `lead_rad` of a strategy
-/// that needs no window.
-pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &mut State<TILES, SLOTS>,
-    workspace: &mut Workspace,
-    input: &Input<'_>,
-    lead_rad: Option<f32>,
-) -> Output {
-    let Workspace {
-        window,
-        window_at,
-        scratch,
-        ..
-    } = workspace;
-    let lead = lead_rad.map(|lead_rad| math::wrap(lead_rad - input.pose.yaw_rad));
-    let Some((origin, scale)) = window_at.or(lead.map(|_| (input.pose.point().cell(), 1))) else {
-        return Output::waiting();
-    };
-    let heights = state.map.heights();
-    // A robot that is stalled within its roll limit leaves the limit rather than stand there for
-    // ever.
-    let incline = config
-        .ground
-        .as_ref()
-        .filter(|_| standing_periods(state, input.time_ms) < STALLED_PERIODS)
-        .and_then(|ground| Incline::new(&config.robot, ground, &heights, &input.pose));
-    let goal = state.strategy.frontier.path().goal();
-    let tiles = state.map.tiles();
-    let hysteresis = Hysteresis {
-        previous: state.slope_direction,
-        goal: state.ground.direction_of(tiles, goal, input.pose.z_m),
-        blocked: state.blocked_direction,
-    };
-    let headed = |place: Place| {
-        let field = || heading_at(window, (origin, scale), &input.pose, place);
-        let wanted = lead.or_else(field)?;
-        Some(match &incline {
-            Some(incline) => incline.heading(place, wanted, hysteresis),
+/// What leads the robot: the window's field, or one heading of the strategy. On a slope that it
+/// must not cross the heading is bent.
+struct Guide {
+    /// The window's least map cell and its scale.
+    at: (Cell, i32),
+    pose: Pose,
+    /// The strategy's heading, radians to the left of the robot's own.
+    lead: Option<f32>,
+    incline: Option<Incline>,
+    hysteresis: Hysteresis,
+}
+
+impl Guide {
+    /// Returns the position of a place near the robot in the window, in window cells.
+    fn position(&self, place: Place) -> (f32, f32) {
+        local_grid::position(self.at, self.pose.to_map(place.point()))
+    }
+
+    /// Returns the heading at a place, radians to the left of the robot's own, and the direction
+    /// that it takes on a slope.
+    fn heading(&self, window: &Window, place: Place) -> Option<(f32, Option<SlopeDirection>)> {
+        let field = || {
+            let (x, y) = self.position(place);
+            let heading = descent::heading_at(window, x, y)?;
+            Some(math::wrap(heading - self.pose.yaw_rad))
+        };
+        let wanted = self.lead.or_else(field)?;
+        Some(match &self.incline {
+            Some(incline) => incline.heading(place, wanted, self.hysteresis),
             None => (wanted, None),
         })
-    };
-    let heading_at = |place: Place| headed(place).map(|(heading, _)| heading);
-    let here = headed(Place::default());
-    state.slope_direction = here.and_then(|(_, direction)| direction);
-    let here = here.map(|(heading, _)| heading);
-    let mut checker = CollisionChecker::empty(&config.robot);
-    checker.stand_on(incline.clone());
-    obstruct(&mut checker, state, config, input);
-    let odom = state.localiser.odom();
-    let velocity = if here.is_some() {
-        let potential_at = |place: Place| {
-            let (x, y) = local_grid::position((origin, scale), input.pose.to_map(place.point()));
-            potential_at(window, x, y)
+    }
+}
+
+impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
+    /// Returns the velocity that follows the window's field, or the heading `lead_rad` of a
+    /// strategy that needs no window.
+    pub(super) fn steer(&mut self, lead_rad: Option<f32>) -> Output {
+        let pose = self.input.pose;
+        let lead = lead_rad.map(|lead_rad| math::wrap(lead_rad - pose.yaw_rad));
+        let beside = lead.map(|_| (pose.point().cell(), 1));
+        let Some(at) = self.workspace.window_at.or(beside) else {
+            return Output::waiting();
         };
-        let potential_at = lead.is_none().then_some(&potential_at as _);
-        let mut query = SearchQuery::new(&checker, heading_at, potential_at);
+        let guide = Guide {
+            at,
+            pose,
+            lead,
+            incline: self.incline(),
+            hysteresis: self.hysteresis(),
+        };
+        let here = guide.heading(&self.workspace.window, Place::default());
+        self.state.slope_direction = here.and_then(|(_, direction)| direction);
+        let mut checker = CollisionChecker::empty(&self.config.robot);
+        checker.stand_on(guide.incline.clone());
+        self.obstruct(&mut checker);
+        let velocity = if here.is_some() {
+            self.follow(&guide, &checker)
+        } else if is_at_goal(&self.workspace.window, guide.position(Place::default())) {
+            // The field has no gradient in the goal's own cell: look around until the cell is
+            // explored.
+            self.look_around(&checker)
+        } else {
+            self.state.strategy.frontier.note_closed();
+            Twist::default()
+        };
+        self.note_wedged(&checker);
+        let doing = self.state.follows();
+        let (velocity, doing) = if self.should_look(velocity) {
+            (self.look_around(&checker), Doing::LooksAbout)
+        } else {
+            (velocity, doing)
+        };
+        let turn = here.map_or(0.0, |(heading, _)| heading);
+        Output {
+            velocity,
+            doing,
+            heading_rad: math::wrap(pose.yaw_rad + turn),
+            ..Output::default()
+        }
+    }
+
+    /// Returns the slopes that bound the headings. A robot that is stalled within its roll limit
+    /// leaves the limit rather than stand there for ever.
+    fn incline(&self) -> Option<Incline> {
+        let ground = self.config.ground.as_ref()?;
+        if self.standing_periods() >= STALLED_PERIODS {
+            return None;
+        }
+        let heights = self.state.map.heights();
+        Incline::new(&self.config.robot, ground, &heights, &self.input.pose)
+    }
+
+    fn hysteresis(&self) -> Hysteresis {
+        let (state, pose) = (&self.state, &self.input.pose);
+        let goal = state.strategy.frontier.path().goal();
+        Hysteresis {
+            previous: state.slope_direction,
+            goal: state.ground.direction_of(state.map.tiles(), goal, pose.z_m),
+            blocked: state.blocked_direction,
+        }
+    }
+
+    /// Follows what leads the robot, past the obstacles.
+    fn follow(&mut self, guide: &Guide, checker: &CollisionChecker) -> Twist {
+        let Workspace {
+            window, scratch, ..
+        } = &mut *self.workspace;
+        let state = &mut *self.state;
+        let heading_at = |place| guide.heading(window, place).map(|(heading, _)| heading);
+        let potential_at = |place| potential_at(window, guide.position(place));
+        let potential_at = guide.lead.is_none().then_some(&potential_at as _);
+        let mut query = SearchQuery::new(checker, heading_at, potential_at);
         // A gap that is hardly wider than the hull may let the robot in and not out again.
         query.squeezes = state.strategy.frontier.has_second_chance();
         query.is_careful = !query.squeezes;
-        query.is_surrounded = state.ground.is_surrounded(&odom, &config.robot);
+        let odom = state.localiser.odom();
+        query.is_surrounded = state.ground.is_surrounded(&odom, &self.config.robot);
         let rested = state.drive.is_resting();
-        let velocity = state.drive.follow(
-            config,
-            &mut query,
-            input.velocity,
-            bytemuck::cast_slice_mut(scratch),
-        );
+        let scratch = bytemuck::cast_slice_mut(scratch);
+        let velocity = state
+            .drive
+            .follow(self.config, &mut query, self.input.velocity, scratch);
         // Where the drive finds no way in one direction it takes the other, until its next search.
         state.blocked_direction = match (rested, state.drive.is_resting()) {
             (_, false) => None,
@@ -96,182 +149,134 @@ pub(super) fn steer<const TILES: usize, const SLOTS: usize>(
             (true, true) => state.blocked_direction,
         };
         velocity
-    } else if is_at_goal(window, (origin, scale), input.pose.point()) {
-        // The field has no gradient in the goal's own cell: look around until the cell is explored.
-        state.drive.look_around(config, &checker, input.velocity)
-    } else {
-        state.strategy.frontier.note_closed();
-        Twist::default()
-    };
-    if state.drive.take_wedged() && !state.ground.open_trap(&odom, &config.robot) {
+    }
+
+    /// Notes a robot that found no way and cannot turn.
+    fn note_wedged(&mut self, checker: &CollisionChecker) {
+        let state = &mut *self.state;
+        let odom = state.localiser.odom();
+        if !state.drive.take_wedged() || state.ground.open_trap(&odom, &self.config.robot) {
+            return;
+        }
         // What another robot closes will be open again.
         if checker.has_company() {
             state.team.way.shut();
         } else {
-            let frontier = &mut state.strategy.frontier;
-            frontier.note_wedged(input.pose.point(), input.time_ms);
+            let (robot, time_ms) = (self.input.pose.point(), self.input.time_ms);
+            state.strategy.frontier.note_wedged(robot, time_ms);
         }
     }
-    let doing = state.follows();
-    let (velocity, doing) = if should_look(state, velocity, input.time_ms) {
-        let look = state.drive.look_around(config, &checker, input.velocity);
-        (look, Doing::LooksAbout)
-    } else {
-        (velocity, doing)
-    };
-    Output {
-        velocity,
-        doing,
-        heading_rad: math::wrap(input.pose.yaw_rad + here.unwrap_or(0.0)),
-        ..Output::default()
+
+    fn look_around(&mut self, checker: &CollisionChecker) -> Twist {
+        let now = self.input.velocity;
+        self.state.drive.look_around(self.config, checker, now)
+    }
+
+    /// Returns the velocity without a local goal: zero, or a turn to look around.
+    pub(super) fn look_about(&mut self) -> Twist {
+        if !self.should_look(Twist::default()) {
+            return Twist::default();
+        }
+        let mut checker = CollisionChecker::empty(&self.config.robot);
+        self.obstruct(&mut checker);
+        self.look_around(&checker)
+    }
+
+    /// Begins a retreat from where a passage was blocked, if the robot cannot turn there or blocked
+    /// another one there before.
+    #[inline(never)]
+    pub(super) fn begin_retreat(&mut self) {
+        let mut checker = CollisionChecker::empty(&self.config.robot);
+        self.obstruct(&mut checker);
+        let frontier = &self.state.strategy.frontier;
+        let must = frontier.failed_before_here() || frontier.goes_back();
+        self.state.drive.begin_retreat(&checker, must);
+    }
+
+    /// Returns the velocity back along the robot's own track, up to a place where it can turn.
+    #[inline(never)]
+    pub(super) fn retreat(&mut self) -> Twist {
+        let mut checker = CollisionChecker::empty(&self.config.robot);
+        let odom = self.state.localiser.odom();
+        self.state.ground.obstruct_measured(&odom, &mut checker);
+        self.keep_off_peers(&mut checker);
+        self.keep_inside(&mut checker);
+        let (pose, now) = (MapPose(self.input.pose), self.input.velocity);
+        let velocity = self.state.drive.retreat(self.config, &pose, &checker, now);
+        self.obstruct(&mut checker);
+        let leads_on = !self.state.strategy.frontier.goes_back();
+        self.state.drive.end_retreat(&checker, leads_on);
+        velocity
+    }
+
+    /// Adds what the drive must not touch: the obstacles near by, the other robots, and what is
+    /// forbidden.
+    #[inline(never)]
+    pub(super) fn obstruct(&self, checker: &mut CollisionChecker) {
+        let tiles = self.state.map.tiles();
+        let poses = (&self.input.pose, &self.state.localiser.odom());
+        self.state
+            .ground
+            .obstruct(self.config, tiles, poses, checker);
+        self.keep_off_peers(checker);
+        self.keep_inside(checker);
+    }
+
+    /// Adds the forbidden cells at the fence within the way that the robot needs to stop.
+    #[inline(never)]
+    fn keep_inside(&self, checker: &mut CollisionChecker) {
+        let fence = self.state.map.tiles().fence();
+        if fence.is_empty() {
+            return;
+        }
+        let config = self.config;
+        let (speed, accel) = (config.max_linear_mps, config.linear_accel_mps2);
+        let stop_m = speed * (config.period_s + 0.5 * speed / accel);
+        let reach_m = config.robot.half_diagonal_m + stop_m;
+        let reach = math::floor(reach_m / CELL_M) + 1;
+        checker.fence_off(&self.input.pose, fence, reach);
+    }
+
+    /// Adds the other robots.
+    fn keep_off_peers(&self, checker: &mut CollisionChecker) {
+        let (robot, time_ms) = (self.robot(), self.input.time_ms);
+        let team = &self.state.team;
+        for (peer, hull) in team.peers().near(time_ms, robot, self.config) {
+            let may_move = team.way.may_move(peer, time_ms);
+            checker.keep_off_hull(&self.input.pose, hull.outline(), may_move);
+        }
+    }
+
+    /// Returns true if the robot should look around: it waits that what is in the way goes, and a
+    /// turn may show that it has gone; or it is stalled on uneven ground, and a turn may measure
+    /// ground that it has not seen. Stalled, it looks around in every second period, and searches
+    /// for a recovery between.
+    fn should_look(&self, velocity: Twist) -> bool {
+        let periods = self.standing_periods();
+        let is_stalled =
+            self.state.ground.is_uneven() && periods >= STALLED_PERIODS && periods % 2 == 1;
+        velocity == Twist::default() && (self.state.strategy.frontier.is_waiting() || is_stalled)
+    }
+
+    /// Returns the whole periods for which the robot has stood at its place.
+    fn standing_periods(&self) -> u32 {
+        self.state.strategy.frontier.standing_ms(self.input.time_ms) / LOOK_PERIOD_MS
     }
 }
 
-/// Returns the velocity without a local goal: zero, or a turn to look around.
-pub(super) fn look_about<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &mut State<TILES, SLOTS>,
-    input: &Input<'_>,
-) -> Twist {
-    if !should_look(state, Twist::default(), input.time_ms) {
-        return Twist::default();
-    }
-    let mut checker = CollisionChecker::empty(&config.robot);
-    obstruct(&mut checker, state, config, input);
-    state.drive.look_around(config, &checker, input.velocity)
+/// Returns the window cell at a position in cells.
+fn index((x, y): (f32, f32)) -> Option<(usize, usize)> {
+    let index = |at| usize::try_from(math::floor(at)).ok();
+    index(x).zip(index(y))
 }
 
-/// Begins a retreat from where a passage was blocked, if the robot cannot turn there or blocked
-/// another one there before.
-#[inline(never)]
-pub(super) fn begin_retreat<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &mut State<TILES, SLOTS>,
-    input: &Input<'_>,
-) {
-    let mut checker = CollisionChecker::empty(&config.robot);
-    obstruct(&mut checker, state, config, input);
-    let frontier = &state.strategy.frontier;
-    let must = frontier.failed_before_here() || frontier.goes_back();
-    state.drive.begin_retreat(&checker, must);
-}
-
-/// Returns the velocity back along the robot's own track, up to a place where it can turn.
-#[inline(never)]
-pub(super) fn retreat<const TILES: usize, const SLOTS: usize>(
-    config: &Config,
-    state: &mut State<TILES, SLOTS>,
-    input: &Input<'_>,
-) -> Twist {
-    let mut checker = CollisionChecker::empty(&config.robot);
-    let odom = state.localiser.odom();
-    state.ground.obstruct_measured(&odom, &mut checker);
-    keep_off_peers(&mut checker, state, config, input);
-    keep_inside(&mut checker, state, config, input);
-    let pose = MapPose(input.pose);
-    let velocity = state.drive.retreat(config, &pose, &checker, input.velocity);
-    obstruct(&mut checker, state, config, input);
-    let leads_on = !state.strategy.frontier.goes_back();
-    state.drive.end_retreat(&checker, leads_on);
-    velocity
-}
-
-/// Adds what the drive must not touch: the obstacles near by, the other robots, and what is
-/// forbidden.
-#[inline(never)]
-pub(super) fn obstruct<const TILES: usize, const SLOTS: usize>(
-    checker: &mut CollisionChecker,
-    state: &State<TILES, SLOTS>,
-    config: &Config,
-    input: &Input<'_>,
-) {
-    let tiles = state.map.tiles();
-    let poses = (&input.pose, &state.localiser.odom());
-    state.ground.obstruct(config, tiles, poses, checker);
-    keep_off_peers(checker, state, config, input);
-    keep_inside(checker, state, config, input);
-}
-
-/// Adds the forbidden cells at the fence within the way that the robot needs to stop.
-#[inline(never)]
-fn keep_inside<const TILES: usize, const SLOTS: usize>(
-    checker: &mut CollisionChecker,
-    state: &State<TILES, SLOTS>,
-    config: &Config,
-    input: &Input<'_>,
-) {
-    let fence = state.map.tiles().fence();
-    if fence.is_empty() {
-        return;
-    }
-    let (speed, accel) = (config.max_linear_mps, config.linear_accel_mps2);
-    let stop_m = speed * (config.period_s + 0.5 * speed / accel);
-    let reach_m = config.robot.half_diagonal_m + stop_m;
-    checker.fence_off(&input.pose, fence, math::floor(reach_m / CELL_M) + 1);
-}
-
-/// Adds the other robots.
-fn keep_off_peers<const TILES: usize, const SLOTS: usize>(
-    checker: &mut CollisionChecker,
-    state: &State<TILES, SLOTS>,
-    config: &Config,
-    input: &Input<'_>,
-) {
-    let robot = input.pose.point();
-    for (peer, hull) in state.team.peers().near(input.time_ms, robot, config) {
-        let may_move = state.team.way.may_move(peer, input.time_ms);
-        checker.keep_off_hull(&input.pose, hull.outline(), may_move);
-    }
-}
-
-/// Returns true if the robot should look around: it waits that what is in the way goes, and a turn
-/// may show that it has gone; or it is stalled on uneven ground, and a turn may measure ground that
-/// it has not seen. Stalled, it looks around in every second period, and searches for a recovery
-/// between.
-fn should_look<const TILES: usize, const SLOTS: usize>(
-    state: &State<TILES, SLOTS>,
-    velocity: Twist,
-    time_ms: u32,
-) -> bool {
-    let periods = standing_periods(state, time_ms);
-    let is_stalled = state.ground.is_uneven() && periods >= STALLED_PERIODS && periods % 2 == 1;
-    velocity == Twist::default() && (state.strategy.frontier.is_waiting() || is_stalled)
-}
-
-/// Returns the whole periods for which the robot has stood at its place.
-fn standing_periods<const TILES: usize, const SLOTS: usize>(
-    state: &State<TILES, SLOTS>,
-    time_ms: u32,
-) -> u32 {
-    state.strategy.frontier.standing_ms(time_ms) / LOOK_PERIOD_MS
-}
-
-fn is_at_goal(window: &Window, (origin, scale): (Cell, i32), robot: Point) -> bool {
-    let (x, y) = local_grid::position((origin, scale), robot);
-    match (
-        usize::try_from(math::floor(x)),
-        usize::try_from(math::floor(y)),
-    ) {
-        (Ok(x), Ok(y)) => window.is_goal(x, y),
-        _ => false,
-    }
+fn is_at_goal(window: &Window, position: (f32, f32)) -> bool {
+    index(position).is_some_and(|(x, y)| window.is_goal(x, y))
 }
 
 /// Returns q of the window cell at a position in cells.
-fn potential_at(window: &Window, x: f32, y: f32) -> f32 {
-    match (
-        usize::try_from(math::floor(x)),
-        usize::try_from(math::floor(y)),
-    ) {
-        (Ok(x), Ok(y)) => window.q(x, y),
-        _ => 0.0,
-    }
-}
-
-/// Returns the field's heading at a place near the robot, radians to the left of the robot's own.
-fn heading_at(window: &Window, at: (Cell, i32), pose: &Pose, place: Place) -> Option<f32> {
-    let (x, y) = local_grid::position(at, pose.to_map(place.point()));
-    descent::heading_at(window, x, y).map(|heading| math::wrap(heading - pose.yaw_rad))
+fn potential_at(window: &Window, position: (f32, f32)) -> f32 {
+    index(position).map_or(0.0, |(x, y)| window.q(x, y))
 }
 
 #[cfg(test)]
@@ -280,8 +285,10 @@ mod tests {
     use std::vec::Vec;
 
     use super::*;
-    use crate::config::UnevenGround;
+    use crate::config::{Config, UnevenGround};
     use crate::field::{SIDE, solve};
+    use crate::input::Input;
+    use crate::planner::state::State;
 
     /// Returns the turn rates of a robot in a flat field, at these times since it last moved.
     fn turn_rates<const N: usize>(ground: Option<UnevenGround>, times_ms: [u32; N]) -> [f32; N] {
@@ -303,7 +310,9 @@ mod tests {
             let Twist {
                 linear_mps,
                 angular_radps,
-            } = steer(&config, &mut state, &mut workspace, &input, None).velocity;
+            } = Step::new(&config, &mut state, &mut workspace, input)
+                .steer(None)
+                .velocity;
             assert_eq!(linear_mps, 0.0);
             angular_radps
         })
@@ -359,7 +368,8 @@ mod tests {
             velocity: Twist::default(),
             scans: [&[], &[]],
         };
-        steer(&config, &mut state, &mut workspace, &input, None)
+        Step::new(&config, &mut state, &mut workspace, input)
+            .steer(None)
             .heading_rad
             .to_degrees()
     }

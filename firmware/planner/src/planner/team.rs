@@ -37,7 +37,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     pub(super) fn move_into_team(&mut self, config: &Config, motion: &Motion) {
         let by = &motion.team_from_own;
         self.localiser.move_map(by, &motion.covariance);
-        let MapPose(pose) = self.localiser.to_map(&self.localiser.odom());
+        let MapPose(pose) = self.localiser.pose();
         self.map.turn(by, pose.point().cell());
         self.errands.turn(by);
         self.skeleton

@@ -10,7 +10,7 @@
 //! gain(h) += Σ max(0, v(h) − v(1))      loss(h) += Σ max(0, v(1) − v(h))      v: `agreement`
 //! ```
 //!
-//! A hypothesis is told if its gain is [`DECIDED`] beams and [`CLEARLY`] times its loss, and
+//! A hypothesis is told if its gain is 15 beams and 4 times its loss, and
 //! refuted if it is the other way round. So surroundings that do not tell two motions apart, as a
 //! corridor along itself, decide nothing.
 //!
@@ -30,6 +30,7 @@
 mod agreement;
 #[cfg(feature = "internals")]
 pub mod agreement;
+mod evidence;
 #[cfg(test)]
 mod tests;
 
@@ -37,12 +38,14 @@ use heapless::Vec;
 
 use crate::clock::since;
 use crate::config::Config;
-use crate::geometry::{Pose, Twist};
+use crate::geometry::{Point, Pose, Twist};
 use crate::input::{INVALID_MM, Input};
 use crate::math;
+use crate::planner::sense::level_scans;
 use crate::robot::{LaserMount, MAX_BEAMS};
 use crate::status::Mistake;
-use agreement::{Scans, Shift, Values, best};
+use agreement::Shift;
+use evidence::{Evidence, Obedience, TURNS, WAYS};
 
 /// Turn and way that end a leg, radians and metres: a mirrored turn of that size is 0.6 rad off.
 const LEG: (f32, f32) = (0.3, 0.25);
@@ -52,24 +55,14 @@ const TOLD_LEG: (f32, f32) = (0.6, 0.25);
 const SHORT_M: f32 = 0.12;
 /// Share of the command below which odometry counts nothing.
 const NOTHING: f32 = 0.1;
-/// Parts of a command that the robot may have driven: it takes time to speed up.
-const PARTS: [f32; 3] = [0.5, 0.75, 1.0];
 /// Greatest turn of a leg that counts as a way, radians.
 const STRAIGHT_RAD: f32 = 0.2;
 /// Least radius of a curve that counts as a way, metres.
 const LEAST_RADIUS_M: f32 = 0.5;
 /// Least turn and way before anything is told, radians and metres: 45° and half a metre.
 const LEAST: (f32, f32) = (0.78, 0.5);
-/// Least legs before anything is told.
-const LEAST_LEGS: u8 = 2;
 /// The same for a scan that stands: odometry that leaps makes it seem so for a moment.
 const STANDING_LEGS: u8 = 4;
-/// Beams that must speak for a hypothesis, more than against it.
-const DECIDED: f32 = 15.0;
-/// The beams that speak for a hypothesis are so many times those against it.
-const CLEARLY: f32 = 4.0;
-/// A robot obeys if it moves so many times farther with the command than against it.
-const OBEYS: f32 = 3.0;
 /// Turn and way with and against the command before that is judged, radians and metres.
 const OBEYED: (f32, f32) = (0.5, 0.2);
 /// A range within this share of the ground's is one of the ground.
@@ -84,123 +77,6 @@ const RACING: u32 = 50;
 const LEAP_M: f32 = 0.3;
 /// Jumps of the odometry after which it is told, less half of the steps without: one is a restart.
 const JUMPS: u8 = 4;
-
-/// What the scan says of a turn, as a multiple of odometry's.
-const TURNS: [f32; 5] = [1.0, -1.0, 0.0, 0.5, 2.0];
-/// What the scan says of a way, as a multiple of odometry's: ahead and to the left.
-const WAYS: [(f32, f32); 7] = [
-    (1.0, 0.0),
-    (0.0, 1.0),
-    (-1.0, 0.0),
-    (0.0, -1.0),
-    (0.0, 0.0),
-    (0.5, 0.0),
-    (2.0, 0.0),
-];
-
-/// The beams for and against each hypothesis. The first one is the odometry.
-#[derive(Debug)]
-struct Evidence<const N: usize> {
-    gain: [f32; N],
-    loss: [f32; N],
-    /// Turn or way so far.
-    seen: f32,
-}
-
-impl<const N: usize> Evidence<N> {
-    const fn new() -> Self {
-        Self {
-            gain: [0.0; N],
-            loss: [0.0; N],
-            seen: 0.0,
-        }
-    }
-
-    /// Adds what a leg says of a hypothesis.
-    fn add(&mut self, hypothesis: usize, odometry: &Values, other: &Values) {
-        let (gain, loss) = other.against(odometry);
-        if let Some(sum) = self.gain.get_mut(hypothesis) {
-            *sum += gain;
-        }
-        if let Some(sum) = self.loss.get_mut(hypothesis) {
-            *sum += loss;
-        }
-    }
-
-    /// Returns the hypothesis that is told.
-    fn told(&self, (legs, least): (u8, f32)) -> Option<usize> {
-        if legs < LEAST_LEGS || self.seen < least {
-            return None;
-        }
-        let mut best = None;
-        let mut most = 0.0;
-        for (number, (gain, loss)) in self.gain.iter().zip(&self.loss).enumerate().skip(1) {
-            let lead = gain - loss;
-            if lead >= DECIDED && *gain >= CLEARLY * loss && lead > most {
-                (best, most) = (Some(number), lead);
-            }
-        }
-        best
-    }
-
-    /// Returns true if the scans refute a hypothesis.
-    fn refutes(&self, hypothesis: usize) -> bool {
-        let pair = self.gain.get(hypothesis).zip(self.loss.get(hypothesis));
-        pair.is_some_and(|(gain, loss)| loss - gain >= DECIDED && *loss >= CLEARLY * gain)
-    }
-
-    /// Returns true if the scans refute every hypothesis but the odometry.
-    fn agrees(&self, least: f32) -> bool {
-        self.seen >= least && (1..N).all(|hypothesis| self.refutes(hypothesis))
-    }
-
-    /// Returns true if the scans refute a hypothesis, or still say nothing of it after twice the
-    /// least way.
-    fn is_unlikely(&self, hypothesis: usize, least: f32) -> bool {
-        self.refutes(hypothesis) || self.seen >= 2.0 * least
-    }
-}
-
-/// Turn or way with and against the command.
-#[derive(Debug)]
-struct Obedience {
-    with: f32,
-    against: f32,
-}
-
-impl Obedience {
-    const fn new() -> Self {
-        Self {
-            with: 0.0,
-            against: 0.0,
-        }
-    }
-
-    /// Adds the motion of a step whose command had held for two periods.
-    fn add(&mut self, [before, last]: [f32; 2], moved: f32) {
-        if before * last <= 0.0 {
-            return;
-        }
-        if last * moved > 0.0 {
-            self.with += moved.abs();
-        } else {
-            self.against += moved.abs();
-        }
-    }
-
-    /// Returns true if the robot moves with the command, false if against it; `None` before it
-    /// moved so much.
-    fn verdict(&self, least: f32) -> Option<bool> {
-        let sum = self.with + self.against;
-        if sum < least {
-            return None;
-        }
-        if self.with >= OBEYS * self.against {
-            return Some(true);
-        }
-        (self.against >= OBEYS * self.with).then_some(false)
-    }
-}
 
 /// The check of the wiring.
 #[derive(Debug)]
@@ -220,8 +96,6 @@ pub(super) struct Wiring {
     ways: Evidence<{ WAYS.len() }>,
     turned: Obedience,
     driven: Obedience,
-    /// Legs of the turn and of the way so far.
-    legs: (u8, u8),
     /// Consecutive legs at whose end the level scan had the ground that a tilted laser sees.
     grounds: u8,
     /// The host's clock at the last step.
@@ -235,29 +109,17 @@ pub(super) struct Wiring {
 impl Wiring {
     /// Returns the check of a new session.
     pub(super) const fn new() -> Self {
-        const STILL: Twist = Twist {
-            linear_mps: 0.0,
-            angular_radps: 0.0,
-        };
         Self {
             is_over: false,
             key: Vec::new(),
-            key_pose: Pose {
-                x_m: 0.0,
-                y_m: 0.0,
-                z_m: 0.0,
-                roll_rad: 0.0,
-                pitch_rad: 0.0,
-                yaw_rad: 0.0,
-            },
+            key_pose: Pose::ORIGIN,
             last: None,
-            told: [STILL; 2],
+            told: [Twist::STILL; 2],
             told_way: (0.0, 0.0),
             turns: Evidence::new(),
             ways: Evidence::new(),
             turned: Obedience::new(),
             driven: Obedience::new(),
-            legs: (0, 0),
             grounds: 0,
             host_ms: 0,
             standing: 0,
@@ -350,8 +212,7 @@ impl Wiring {
 
     /// Compares the scan with the key scan at the end of a leg.
     fn scan(&mut self, config: &Config, input: &Input<'_>, plans: bool) -> Option<Mistake> {
-        let mut level = config.lasers.iter().zip(input.scans);
-        let (laser, ranges_mm) = level.find(|(laser, _)| laser.is_level())?;
+        let (laser, ranges_mm) = level_scans(config, input).next()?;
         if is_too_short(laser, ranges_mm) {
             return Some(Mistake::RangesTooShort);
         }
@@ -362,49 +223,14 @@ impl Wiring {
             self.renew(input, ranges_mm);
             return None;
         }
-        let shift = self.key_pose.to_robot(input.pose.point());
+        let Point { x_m, y_m } = self.key_pose.to_robot(input.pose.point());
         let turn_rad = math::wrap(input.pose.yaw_rad - self.key_pose.yaw_rad);
-        let motion = Shift {
-            x_m: shift.x_m,
-            y_m: shift.y_m,
-            turn_rad,
-        };
-        let way_m = motion.length_m();
-        let (told_rad, told_m) = (self.told_way.0.abs(), self.told_way.1.abs());
-        let turns_unseen = told_rad >= TOLD_LEG.0 && turn_rad.abs() < NOTHING * told_rad;
-        let drives_unseen = told_m >= TOLD_LEG.1 && way_m < NOTHING * told_m;
-        let is_moved = turn_rad.abs() >= LEG.0 || way_m >= LEG.1;
-        if plans || (!is_moved && !turns_unseen && !drives_unseen) {
+        let motion = Shift { x_m, y_m, turn_rad };
+        let is_moved = turn_rad.abs() >= LEG.0 || motion.length_m() >= LEG.1;
+        if plans || (!is_moved && !self.unseen(&motion).0 && !self.unseen(&motion).1) {
             return None;
         }
-        let scans = (laser, self.key.as_slice(), ranges_mm);
-        if turn_rad.abs() >= LEG.0 && self.legs.0 < MOST_LEGS {
-            self.legs.0 += 1;
-            turn_leg(&mut self.turns, scans, &motion);
-        } else if turns_unseen {
-            self.legs.0 = self.legs.0.saturating_add(1);
-            let told = Shift {
-                turn_rad: self.told_way.0,
-                ..motion
-            };
-            turn_unseen(&mut self.turns, scans, (&motion, &told));
-        }
-        // In a curve the way counts only if the turn is right and the curve is wide: wheels that
-        // turn a robot on the spot slip, and count a way that it did not go.
-        let is_wide = self.turns.refutes(1) && way_m >= LEAST_RADIUS_M * turn_rad.abs();
-        let is_drive = turn_rad.abs() <= STRAIGHT_RAD || is_wide;
-        if way_m >= SHORT_M && is_drive && self.legs.1 < MOST_LEGS {
-            self.legs.1 = self.legs.1.saturating_add(1);
-            way_leg(&mut self.ways, scans, &motion);
-        } else if drives_unseen {
-            self.legs.1 = self.legs.1.saturating_add(1);
-            let told = Shift {
-                x_m: self.told_way.1,
-                y_m: 0.0,
-                turn_rad,
-            };
-            way_unseen(&mut self.ways, scans, (&motion, &told));
-        }
+        self.compare(laser, ranges_mm, &motion);
         self.renew(input, ranges_mm);
         self.grounds = if sees_ground(config, ranges_mm) {
             self.grounds.saturating_add(1)
@@ -415,6 +241,37 @@ impl Wiring {
             return Some(Mistake::LasersSwapped);
         }
         self.judge()
+    }
+
+    /// Returns true for the turn, and for the way, if odometry counted nothing of a command that is
+    /// long enough for a leg.
+    fn unseen(&self, motion: &Shift) -> (bool, bool) {
+        let (told_rad, told_m) = (self.told_way.0.abs(), self.told_way.1.abs());
+        (
+            told_rad >= TOLD_LEG.0 && motion.turn_rad.abs() < NOTHING * told_rad,
+            told_m >= TOLD_LEG.1 && motion.length_m() < NOTHING * told_m,
+        )
+    }
+
+    /// Adds what a leg says of the turn and of the way.
+    fn compare(&mut self, laser: &LaserMount, ranges_mm: &[u16], motion: &Shift) {
+        let scans = (laser, self.key.as_slice(), ranges_mm);
+        let (turns_unseen, drives_unseen) = self.unseen(motion);
+        let (turn_rad, way_m) = (motion.turn_rad.abs(), motion.length_m());
+        if turn_rad >= LEG.0 && self.turns.legs < MOST_LEGS {
+            self.turns.add_turn(scans, motion);
+        } else if turns_unseen {
+            self.turns.add_unseen_turn(scans, motion, self.told_way.0);
+        }
+        // In a curve the way counts only if the turn is right and the curve is wide: wheels that
+        // turn a robot on the spot slip, and count a way that it did not go.
+        let is_wide = self.turns.refutes(1) && way_m >= LEAST_RADIUS_M * turn_rad;
+        let is_drive = turn_rad <= STRAIGHT_RAD || is_wide;
+        if way_m >= SHORT_M && is_drive && self.ways.legs < MOST_LEGS {
+            self.ways.add_way(scans, motion);
+        } else if drives_unseen {
+            self.ways.add_unseen_way(scans, motion, self.told_way.1);
+        }
     }
 
     /// Begins a leg.
@@ -428,10 +285,7 @@ impl Wiring {
 
     /// Returns the mistake that is certain, and ends the check if none is left.
     fn judge(&mut self) -> Option<Mistake> {
-        let (turns, ways) = (
-            self.turns.told((self.legs.0, LEAST.0)),
-            self.ways.told((self.legs.1, LEAST.1)),
-        );
+        let (turns, ways) = (self.turns.told(LEAST.0), self.ways.told(LEAST.1));
         let (turned, driven) = (self.turned.verdict(OBEYED.0), self.driven.verdict(OBEYED.1));
         let (is_unmirrored, is_ahead) = (
             self.turns.is_unlikely(1, LEAST.0),
@@ -441,7 +295,7 @@ impl Wiring {
             (Some(1), Some(true)) => Some(Mistake::ScanMirrored),
             (Some(1), Some(false)) => Some(Mistake::YawReversed),
             (Some(1), None) => None,
-            (Some(2), _) if self.legs.0 < STANDING_LEGS => None,
+            (Some(2), _) if self.turns.legs < STANDING_LEGS => None,
             (Some(2), _) => Some(Mistake::ScanStands),
             (Some(3), _) => Some(Mistake::TurnTooGreat),
             (Some(_), _) => Some(Mistake::TurnTooSmall),
@@ -454,7 +308,7 @@ impl Wiring {
             (Some(2), Some(false)) => Some(Mistake::WayReversed),
             (Some(2), None) => None,
             (Some(3), _) => Some(Mistake::LaserTurnedLeft),
-            (Some(4), _) if self.legs.1 < STANDING_LEGS => None,
+            (Some(4), _) if self.ways.legs < STANDING_LEGS => None,
             (Some(4), _) => Some(Mistake::ScanStands),
             (Some(5), _) => Some(Mistake::WayTooLong),
             (Some(_), _) => Some(Mistake::WayTooShort),
@@ -462,100 +316,13 @@ impl Wiring {
             (None, _) => None,
         };
         let (turn, way) = (self.turns.agrees(LEAST.0), self.ways.agrees(LEAST.1));
-        let turn_ends = (turn && turned == Some(true)) || self.legs.0 >= MOST_LEGS;
-        let way_ends = (way && driven == Some(true)) || self.legs.1 >= MOST_LEGS;
+        let turn_ends = (turn && turned == Some(true)) || self.turns.legs >= MOST_LEGS;
+        let way_ends = (way && driven == Some(true)) || self.ways.legs >= MOST_LEGS;
         // A clock that is wrong is counted for longer than a short drive takes.
         let clock_ends = self.standing == 0 && self.racing == 0;
         self.is_over = turn_ends && way_ends && clock_ends;
         of_turn.or(of_way)
     }
-}
-
-/// Adds what a leg says of the turn. What is refuted costs nothing more.
-#[inline(never)]
-fn turn_leg(turns: &mut Evidence<{ TURNS.len() }>, scans: Scans<'_>, motion: &Shift) {
-    turns.seen += motion.turn_rad.abs();
-    if turns.agrees(0.0) {
-        return;
-    }
-    let odometry = best(scans, motion);
-    for (number, times) in TURNS.into_iter().enumerate().skip(1) {
-        if turns.refutes(number) {
-            continue;
-        }
-        let other = Shift {
-            // Odometry that turns the wrong way also goes to the wrong side.
-            y_m: if times < 0.0 { -motion.y_m } else { motion.y_m },
-            turn_rad: times * motion.turn_rad,
-            ..*motion
-        };
-        turns.add(number, &odometry, &best(scans, &other));
-    }
-}
-
-/// Adds what a leg says of the way.
-#[inline(never)]
-fn way_leg(ways: &mut Evidence<{ WAYS.len() }>, scans: Scans<'_>, motion: &Shift) {
-    ways.seen += motion.length_m();
-    if ways.agrees(0.0) {
-        return;
-    }
-    let odometry = best(scans, motion);
-    for (number, (ahead, left)) in WAYS.into_iter().enumerate().skip(1) {
-        // In a curve the wheels count by centimetres too much or too little.
-        let is_scale = left == 0.0 && ahead > 0.0;
-        if ways.refutes(number) || (is_scale && !motion.is_straight()) {
-            continue;
-        }
-        let other = Shift {
-            x_m: ahead * motion.x_m - left * motion.y_m,
-            y_m: left * motion.x_m + ahead * motion.y_m,
-            ..*motion
-        };
-        ways.add(number, &odometry, &best(scans, &other));
-    }
-}
-
-/// Adds what a leg says on which odometry counted nothing: the robot may have turned as it was
-/// told, or a part of that.
-#[inline(never)]
-fn turn_unseen(
-    turns: &mut Evidence<{ TURNS.len() }>,
-    scans: Scans<'_>,
-    (odometry, told): (&Shift, &Shift),
-) {
-    let odometry = best(scans, odometry);
-    let parts = PARTS.map(|part| Shift {
-        turn_rad: part * told.turn_rad,
-        ..*told
-    });
-    turns.add(TURNS.len() - 1, &odometry, &best_of(scans, &parts));
-    turns.seen += told.turn_rad.abs();
-}
-
-/// As [`turn_unseen`], of the way.
-#[inline(never)]
-fn way_unseen(
-    ways: &mut Evidence<{ WAYS.len() }>,
-    scans: Scans<'_>,
-    (odometry, told): (&Shift, &Shift),
-) {
-    let odometry = best(scans, odometry);
-    let parts = PARTS.map(|part| Shift {
-        x_m: part * told.x_m,
-        ..*told
-    });
-    ways.add(WAYS.len() - 1, &odometry, &best_of(scans, &parts));
-    ways.seen += told.length_m();
-}
-
-/// Returns how well the beams agree under the best of some motions.
-fn best_of(scans: Scans<'_>, motions: &[Shift]) -> Values {
-    let mut found = Values::default();
-    for motion in motions {
-        found = found.better(best(scans, motion));
-    }
-    found
 }
 
 /// Returns true if all that returned is nearer than a thousandth of the range.

@@ -5,6 +5,7 @@
 use crate::field::local_grid::LocalGrid;
 use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, Window};
 use crate::geometry::Cell;
+use crate::path::PlanningScratch;
 
 /// Words of scratch.
 pub(super) const SCRATCH: usize = SCRATCH_FLOATS;
@@ -32,6 +33,18 @@ impl Workspace {
             window_at: None,
             local_grid: LocalGrid::new(),
             scratch: [0.0; SCRATCH],
+        }
+    }
+
+    /// Lends the memory that a search along a skeleton of so many tiles needs.
+    pub(super) fn planning(&mut self, slots: usize) -> PlanningScratch<'_> {
+        let words: &mut [u32] = bytemuck::cast_slice_mut(&mut self.scratch);
+        let (residues, queue) = words.split_at_mut(slots * 16);
+        let (residues, _) = residues.as_chunks_mut::<2>();
+        PlanningScratch {
+            residues,
+            queue,
+            local_grid: &mut self.local_grid,
         }
     }
 

@@ -60,14 +60,6 @@ pub(crate) struct Team {
 impl Team {
     /// Returns the state of a robot alone.
     pub(crate) const fn new() -> Self {
-        const ORIGIN: Pose = Pose {
-            x_m: 0.0,
-            y_m: 0.0,
-            z_m: 0.0,
-            roll_rad: 0.0,
-            pitch_rad: 0.0,
-            yaw_rad: 0.0,
-        };
         Self {
             member: None,
             map_from_odom: MapFromOdom::IDENTITY,
@@ -75,11 +67,8 @@ impl Team {
             sequence: 0,
             owes_beacon: false,
             now_ms: 0,
-            pose: ORIGIN,
-            velocity: Twist {
-                linear_mps: 0.0,
-                angular_radps: 0.0,
-            },
+            pose: Pose::ORIGIN,
+            velocity: Twist::STILL,
             peers: Peers::new(),
             exchange: Exchange::new(),
             way: RightOfWay::new(),

@@ -106,7 +106,7 @@ impl RightOfWay {
         Self {
             stance: Stance::Free,
             other: 0,
-            other_at: Point { x_m: 0.0, y_m: 0.0 },
+            other_at: Point::ORIGIN,
             other_ms: 0,
             ignored: Vec::new(),
             is_shut: false,

@@ -230,7 +230,7 @@ impl Meter for Board {
     fn mark(&mut self, mark: Mark) -> u32 {
         if self.emulated {
             // The emulator ignores the store; a plugin sees its address and counts cycles by stage.
-            self.trace.stim[mark as usize].write_u8(0);
+            self.trace.stim[mark.number()].write_u8(0);
         }
         self.timer.cnt().read().bits()
     }

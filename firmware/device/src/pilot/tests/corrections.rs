@@ -5,7 +5,7 @@ use fieldline_protocol::message::{
     Refusal, Status, TRAIL_BYTES, TeamTile, Twist,
 };
 
-use super::{Bench, Pilot, observation, started};
+use super::{Device, Pilot, observation, start};
 
 /// Tile (40, k), far from the robot, all free.
 fn part(epoch: u16, numbers: core::ops::Range<u16>, last: bool) -> CorrectedTiles {
@@ -30,13 +30,13 @@ fn part(epoch: u16, numbers: core::ops::Range<u16>, last: bool) -> CorrectedTile
     part
 }
 
-fn open(pilot: &mut Pilot, bench: &mut Bench, epoch: u16, tiles: u16) {
+fn open(device: &mut Device, epoch: u16, tiles: u16) {
     let correct = Correct {
         epoch,
         tiles,
         ..Correct::default()
     };
-    let begun = pilot.correct(&mut bench.memory(), &correct);
+    let begun = device.correct(&correct);
     assert_eq!(begun, Ok(progress(epoch, 0, false)));
 }
 
@@ -48,15 +48,15 @@ const fn progress(epoch: u16, next: u16, closed: bool) -> CorrectionProgress {
     }
 }
 
-fn is_known(bench: &mut Bench, k: i16) -> bool {
-    Pilot::tile(&bench.memory(), 40, k).is_some()
+fn is_known(device: &mut Device, k: i16) -> bool {
+    Pilot::tile(&device.bench.memory(), 40, k).is_some()
 }
 
 #[test]
 fn parts_may_be_lost_and_come_twice() {
-    let (mut pilot, mut bench) = started();
-    open(&mut pilot, &mut bench, 3, 3);
-    let mut send = |part: &CorrectedTiles| pilot.tiles(&mut bench.memory(), part);
+    let mut device = Device::started(start());
+    open(&mut device, 3, 3);
+    let mut send = |part: &CorrectedTiles| device.tiles(part);
     let whole = send(&part(3, 0..1, false));
     assert_eq!(whole, Ok(progress(3, 1, false)));
     let early = send(&part(3, 2..3, true));
@@ -67,69 +67,68 @@ fn parts_may_be_lost_and_come_twice() {
     assert_eq!(overlapping, Ok(progress(3, 3, true)));
     let late = send(&part(3, 1..3, true));
     assert_eq!(late, Ok(progress(3, 3, true)));
-    assert!((0..3).all(|k| is_known(&mut bench, k)));
-    let command = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
+    assert!((0..3).all(|k| is_known(&mut device, k)));
+    let command = device.observe(&observation(0));
     assert_eq!(command.map(|it| it.map_epoch), Ok(3));
 }
 
 #[test]
 fn a_part_of_another_correction_or_with_bad_cells_is_refused() {
-    let (mut pilot, mut bench) = (Pilot::new(), Bench::new());
-    let refused = pilot.tiles(&mut bench.memory(), &part(1, 0..1, true));
+    let mut device = Device::new();
+    let refused = device.tiles(&part(1, 0..1, true));
     assert_eq!(refused, Err(Refusal::NotStarted));
-    let refused = pilot.correct(&mut bench.memory(), &Correct::default());
+    let refused = device.correct(&Correct::default());
     assert_eq!(refused, Err(Refusal::NotStarted));
 
-    let (mut pilot, mut bench) = started();
-    let refused = pilot.tiles(&mut bench.memory(), &part(1, 0..1, true));
+    let mut device = Device::started(start());
+    let refused = device.tiles(&part(1, 0..1, true));
     assert_eq!(refused, Err(Refusal::NoCorrection));
-    open(&mut pilot, &mut bench, 2, 2);
-    let refused = pilot.tiles(&mut bench.memory(), &part(1, 0..1, true));
+    open(&mut device, 2, 2);
+    let refused = device.tiles(&part(1, 0..1, true));
     assert_eq!(refused, Err(Refusal::NoCorrection));
     let mut short = part(2, 0..2, true);
     short.cells.pop();
-    let refused = pilot.tiles(&mut bench.memory(), &short);
+    let refused = device.tiles(&short);
     assert_eq!(refused, Err(Refusal::BadTile));
-    assert!(is_known(&mut bench, 0) && !is_known(&mut bench, 1));
+    assert!(is_known(&mut device, 0) && !is_known(&mut device, 1));
     let mut wrong = part(2, 1..2, true);
     wrong.cells[3] = 0;
-    let refused = pilot.tiles(&mut bench.memory(), &wrong);
+    let refused = device.tiles(&wrong);
     assert_eq!(refused, Err(Refusal::BadTile));
-    let whole = pilot.tiles(&mut bench.memory(), &part(2, 1..2, true));
+    let whole = device.tiles(&part(2, 1..2, true));
     assert_eq!(whole, Ok(progress(2, 2, true)));
     let correct = Correct {
         epoch: 3,
         tiles: 513,
         ..Correct::default()
     };
-    let refused = pilot.correct(&mut bench.memory(), &correct);
+    let refused = device.correct(&correct);
     assert_eq!(refused, Err(Refusal::BadCorrection));
 }
 
 #[test]
 fn a_newer_correction_takes_the_place_of_an_open_one() {
-    let (mut pilot, mut bench) = started();
-    open(&mut pilot, &mut bench, 1, 2);
-    let command = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
+    let mut device = Device::started(start());
+    open(&mut device, 1, 2);
+    let command = device.observe(&observation(0));
     let told = command.map(|it| (it.velocity, it.status, it.map_epoch));
     assert_eq!(told, Ok((Twist::default(), Status::Exploring, 0)));
-    open(&mut pilot, &mut bench, 2, 0);
-    let closed = pilot.tiles(&mut bench.memory(), &part(2, 0..0, true));
+    open(&mut device, 2, 0);
+    let closed = device.tiles(&part(2, 0..0, true));
     assert_eq!(closed, Ok(progress(2, 0, true)));
-    let refused = pilot.tiles(&mut bench.memory(), &part(1, 0..2, true));
+    let refused = device.tiles(&part(1, 0..2, true));
     assert_eq!(refused, Err(Refusal::NoCorrection));
-    let command = pilot.observe(&mut bench.memory(), &observation(200), &mut ());
+    let command = device.observe(&observation(200));
     assert_eq!(command.map(|it| it.map_epoch), Ok(2));
     // The next session begins without.
-    let start = Control::Start(super::start());
-    pilot.control(&mut bench.memory(), &start).expect("valid");
-    let command = pilot.observe(&mut bench.memory(), &observation(400), &mut ());
+    device.order(&Control::Start(start())).expect("valid");
+    let command = device.observe(&observation(400));
     assert_eq!(command.map(|it| it.map_epoch), Ok(0));
 }
 
 #[test]
 fn a_recall_is_taken_once_the_map_is_back_and_before_the_first_scan() {
-    let (mut pilot, mut bench) = started();
+    let mut device = Device::started(start());
     let recall = |epoch| Recall {
         epoch,
         points: [RecalledPoint {
@@ -141,32 +140,32 @@ fn a_recall_is_taken_once_the_map_is_back_and_before_the_first_scan() {
         .collect(),
         ..Recall::default()
     };
-    let refused = pilot.recall(&mut bench.memory(), &recall(1));
+    let refused = device.recall(&recall(1));
     assert_eq!(refused, Err(Refusal::NoCorrection));
-    open(&mut pilot, &mut bench, 1, 1);
-    let refused = pilot.recall(&mut bench.memory(), &recall(1));
+    open(&mut device, 1, 1);
+    let refused = device.recall(&recall(1));
     assert_eq!(refused, Err(Refusal::NoCorrection), "it is open");
     let mut trailed = part(1, 0..1, true);
     trailed.tiles[0].trail = true;
-    let refused = pilot.tiles(&mut bench.memory(), &trailed);
+    let refused = device.tiles(&trailed);
     assert_eq!(refused, Err(Refusal::BadTile), "it has no trail");
     trailed
         .cells
         .extend_from_slice(&[1; TRAIL_BYTES])
         .expect("room");
-    let whole = pilot.tiles(&mut bench.memory(), &trailed);
+    let whole = device.tiles(&trailed);
     assert_eq!(whole, Ok(progress(1, 1, true)));
     let mut absurd = recall(1);
     absurd.points[0].returns = 0;
-    let refused = pilot.recall(&mut bench.memory(), &absurd);
+    let refused = device.recall(&absurd);
     assert_eq!(refused, Err(Refusal::BadCorrection));
     for _ in 0..2 {
-        let taken = pilot.recall(&mut bench.memory(), &recall(1));
+        let taken = device.recall(&recall(1));
         assert_eq!(taken, Ok(progress(1, 1, true)));
     }
-    let command = pilot.observe(&mut bench.memory(), &observation(0), &mut ());
+    let command = device.observe(&observation(0));
     assert_eq!(command.map(|it| it.status), Ok(Status::Exploring));
-    let refused = pilot.recall(&mut bench.memory(), &recall(1));
+    let refused = device.recall(&recall(1));
     assert_eq!(
         refused,
         Err(Refusal::NoCorrection),

@@ -17,18 +17,8 @@ const BEFORE: Cell = Cell { x: WALL - 1, y: 0 };
 /// The robot stands upright at the origin.
 const AT_REST: Input<'_> = Input {
     time_ms: 0,
-    pose: Pose {
-        x_m: 0.0,
-        y_m: 0.0,
-        z_m: 0.0,
-        roll_rad: 0.0,
-        pitch_rad: 0.0,
-        yaw_rad: 0.0,
-    },
-    velocity: Twist {
-        linear_mps: 0.0,
-        angular_radps: 0.0,
-    },
+    pose: Pose::ORIGIN,
+    velocity: Twist::STILL,
     scans: [&[], &[]],
 };
 

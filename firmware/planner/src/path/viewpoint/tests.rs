@@ -9,7 +9,7 @@ use crate::geometry::Cell;
 use crate::grid::Tiling;
 use crate::map::{Class, Tiles};
 use crate::path::blocked_passages::BlockedPassages;
-use crate::path::rays::along;
+use crate::path::rays::{RAYS, along, ray};
 use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::utility::GoalOrder;
 use crate::path::viewpoint::{Found, Inputs, Search, Viewpoint};
@@ -92,7 +92,7 @@ fn search_in(scratch: &mut [u32], tiles: &Map, robot: Cell, gone: &[Cell]) -> Op
 /// beyond.
 fn sees(tiles: &Map, viewpoint: Viewpoint) -> bool {
     let class = |cell| tiles.class(cell);
-    (0..super::RAYS).map(super::ray).any(|ray| {
+    (0..RAYS).map(ray).any(|ray| {
         let cells: Vec<Cell> = (-60..60).map(|k| along(viewpoint.gap, ray, k)).collect();
         let at = |cell| cells.iter().position(|&other| other == cell);
         match (at(viewpoint.stand), at(viewpoint.gap), at(viewpoint.beyond)) {

@@ -16,7 +16,7 @@ use crate::geometry::{MapFromOdom, OdomPose, Point};
 use crate::input::Input;
 use crate::map::obstacle_points::{FELT, MAX_POINTS, ObstaclePoints};
 use crate::math;
-use crate::planner::level_scans;
+use crate::planner::sense::level_scans;
 use crate::planner::state::State;
 
 /// Obstacle points and track of a lone robot.

@@ -208,140 +208,68 @@ fn wheels_that_slip_while_the_robot_turns_on_the_spot_are_no_mistake() {
 
 #[test]
 fn each_mistake_is_told_in_the_first_metre_and_quarter_turn() {
-    let quarter = core::f32::consts::FRAC_PI_2;
-    let (right, cases) = (RIGHT, &mut Vec::new());
-    cases.push((
-        Wrong {
-            is_mirrored: true,
-            ..right
-        },
-        Mistake::ScanMirrored,
-    ));
-    cases.push((
-        Wrong {
-            odometry: [1.0, -1.0],
-            ..right
-        },
-        Mistake::YawReversed,
-    ));
-    cases.push((
-        Wrong {
-            heard: [1.0, -1.0],
-            ..right
-        },
-        Mistake::TurnsReversed,
-    ));
-    cases.push((
-        Wrong {
-            heard: [-1.0, 1.0],
-            ..right
-        },
-        Mistake::DriveReversed,
-    ));
-    cases.push((
-        Wrong {
-            odometry: [-1.0, 1.0],
-            ..right
-        },
-        Mistake::WayReversed,
-    ));
-    cases.push((
-        Wrong {
-            laser_rad: quarter,
-            ..right
-        },
-        Mistake::LaserTurnedLeft,
-    ));
-    cases.push((
-        Wrong {
-            laser_rad: -quarter,
-            ..right
-        },
-        Mistake::LaserTurnedRight,
-    ));
-    cases.push((
-        Wrong {
-            laser_rad: 2.0 * quarter,
-            ..right
-        },
-        Mistake::LaserTurnedBack,
-    ));
-    cases.push((
-        Wrong {
-            odometry: [2.0, 1.0],
-            ..right
-        },
-        Mistake::WayTooLong,
-    ));
-    cases.push((
-        Wrong {
-            odometry: [0.5, 1.0],
-            ..right
-        },
-        Mistake::WayTooShort,
-    ));
-    cases.push((
-        Wrong {
-            odometry: [0.001, 1.0],
-            ..right
-        },
-        Mistake::WayTooShort,
-    ));
-    cases.push((
-        Wrong {
-            odometry: [1000.0, 1.0],
-            ..right
-        },
-        Mistake::WayTooLong,
-    ));
-    cases.push((
-        Wrong {
-            odometry: [1.0, 2.0],
-            ..right
-        },
-        Mistake::TurnTooGreat,
-    ));
-    cases.push((
-        Wrong {
-            odometry: [1.0, 0.5],
-            ..right
-        },
-        Mistake::TurnTooSmall,
-    ));
-    cases.push((
-        Wrong {
-            odometry: [1.0, 0.0],
-            ..right
-        },
-        Mistake::TurnTooSmall,
-    ));
-    cases.push((
-        Wrong {
-            scan_stands: true,
-            ..right
-        },
-        Mistake::ScanStands,
-    ));
-    for (wrong, mistake) in cases {
-        let mut robot = Robot::new(ROOM, *wrong);
-        assert_eq!(robot.first_drive(), Some(*mistake));
-        // Two legs by odometry; one that counts half has gone twice as far.
-        assert!(robot.way_m <= 1.2, "{mistake}: {} m", robot.way_m);
-        // The way is checked after a turn to and fro, of 193 degrees in all.
-        let turned = if robot.way_m > 0.0 {
-            robot.turn_rad - 3.36
-        } else {
-            robot.turn_rad
-        };
-        // Odometry that counts half has turned twice as far; one that counts nothing takes four
-        // legs of the command.
-        let most_rad = if (0.0..1.0).contains(&wrong.odometry[1]) {
-            2.8
-        } else {
-            1.6
-        };
-        assert!(turned <= most_rad, "{mistake}: {turned} rad");
+    let mirrored = Wrong {
+        is_mirrored: true,
+        ..RIGHT
+    };
+    let standing = Wrong {
+        scan_stands: true,
+        ..RIGHT
+    };
+    let heard = |way, turn| Wrong {
+        heard: [way, turn],
+        ..RIGHT
+    };
+    let odometry = |way, turn| Wrong {
+        odometry: [way, turn],
+        ..RIGHT
+    };
+    let laser = |quarters: f32| Wrong {
+        laser_rad: quarters * core::f32::consts::FRAC_PI_2,
+        ..RIGHT
+    };
+    for (wrong, mistake) in [
+        (mirrored, Mistake::ScanMirrored),
+        (odometry(1.0, -1.0), Mistake::YawReversed),
+        (heard(1.0, -1.0), Mistake::TurnsReversed),
+        (heard(-1.0, 1.0), Mistake::DriveReversed),
+        (odometry(-1.0, 1.0), Mistake::WayReversed),
+        (laser(1.0), Mistake::LaserTurnedLeft),
+        (laser(-1.0), Mistake::LaserTurnedRight),
+        (laser(2.0), Mistake::LaserTurnedBack),
+        (odometry(2.0, 1.0), Mistake::WayTooLong),
+        (odometry(0.5, 1.0), Mistake::WayTooShort),
+        (odometry(0.001, 1.0), Mistake::WayTooShort),
+        (odometry(1000.0, 1.0), Mistake::WayTooLong),
+        (odometry(1.0, 2.0), Mistake::TurnTooGreat),
+        (odometry(1.0, 0.5), Mistake::TurnTooSmall),
+        (odometry(1.0, 0.0), Mistake::TurnTooSmall),
+        (standing, Mistake::ScanStands),
+    ] {
+        assert_is_told_soon(wrong, mistake);
     }
+}
+
+/// Asserts that a first drive tells the mistake within two legs of the way, or of the turn.
+fn assert_is_told_soon(wrong: Wrong, mistake: Mistake) {
+    let mut robot = Robot::new(ROOM, wrong);
+    assert_eq!(robot.first_drive(), Some(mistake));
+    // Two legs by odometry; one that counts half has gone twice as far.
+    assert!(robot.way_m <= 1.2, "{mistake}: {} m", robot.way_m);
+    // The way is checked after a turn to and fro, of 193 degrees in all.
+    let turned = if robot.way_m > 0.0 {
+        robot.turn_rad - 3.36
+    } else {
+        robot.turn_rad
+    };
+    // Odometry that counts half has turned twice as far; one that counts nothing takes four
+    // legs of the command.
+    let most_rad = if (0.0..1.0).contains(&wrong.odometry[1]) {
+        2.8
+    } else {
+        1.6
+    };
+    assert!(turned <= most_rad, "{mistake}: {turned} rad");
 }
 
 #[test]

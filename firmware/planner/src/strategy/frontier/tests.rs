@@ -119,11 +119,8 @@ impl Scene {
 
     /// The inputs of a round from a reference height; without height levels for `None`.
     fn context(&mut self, reference_m: Option<f32>) -> PlanningContext<'_, 24, 64> {
+        let skeleton = &mut self.skeleton;
         PlanningContext {
-            skeleton: &mut self.skeleton,
-            tiles: &self.tiles,
-            footprint: &self.footprint,
-            disc: &self.footprint,
             blocked: &self.blocked,
             pose: Pose {
                 x_m: 0.05,
@@ -131,21 +128,15 @@ impl Scene {
                 yaw_rad: self.yaw_rad,
                 ..Pose::default()
             },
-            time_ms: 0,
-            limits: &self.limits,
-            goal_level: None,
             order: GoalOrder::new(self.order, &Tuning::DEFAULT.order),
-            tuning: &Tuning::DEFAULT,
             levels: reference_m.map(|reference_m| LevelCost {
                 heights: &self.heights,
                 ground: &UnevenGround::TABLE_I,
                 reference_m,
             }),
-            team: None,
-            must_wait: false,
             came_through_blocked: self.came_through_blocked,
-            known_cells: 0,
             openings_were_tried: self.openings_were_tried,
+            ..PlanningContext::on(skeleton, &self.tiles, &self.footprint, &self.limits)
         }
     }
 

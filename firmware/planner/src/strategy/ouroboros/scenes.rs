@@ -13,14 +13,13 @@ use core::f32::consts::{FRAC_PI_2, PI};
 use std::string::String;
 use std::vec::Vec;
 
-use crate::config::{LoopLimits, Order, OuroborosTuning, Tuning};
+use crate::config::{LoopLimits, OuroborosTuning};
 use crate::field::local_grid::LocalGrid;
 use crate::geometry::{Cell, Pose};
 use crate::grid::Site;
 use crate::map::{Class, Tiles};
 use crate::path::blocked_passages::NONE;
 use crate::path::nearest::Centres;
-use crate::path::utility::GoalOrder;
 use crate::path::{PlanningContext, PlanningScratch};
 use crate::roadmap::Residues;
 use crate::roadmap::branches::surroundings;
@@ -160,24 +159,10 @@ impl Scene {
     }
 
     pub(super) fn round(&mut self) -> PlanningContext<'_, TILES, SLOTS> {
+        let (skeleton, tiles) = (&mut self.skeleton, &self.tiles);
         PlanningContext {
-            skeleton: &mut self.skeleton,
-            tiles: &self.tiles,
-            footprint: &self.footprint,
-            disc: &self.footprint,
-            blocked: &NONE,
             pose: self.pose,
-            time_ms: 0,
-            limits: &self.limits,
-            goal_level: None,
-            order: GoalOrder::new(Order::ALL, &Tuning::DEFAULT.order),
-            tuning: &Tuning::DEFAULT,
-            levels: None,
-            team: None,
-            must_wait: false,
-            came_through_blocked: false,
-            known_cells: 0,
-            openings_were_tried: false,
+            ..PlanningContext::on(skeleton, tiles, &self.footprint, &self.limits)
         }
     }
 

@@ -91,7 +91,7 @@ impl<const SLOTS: usize> Tdbvp<SLOTS> {
             on_path: false,
             now_ms: 0,
             new_place_ms: 0,
-            stay: Point { x_m: 0.0, y_m: 0.0 },
+            stay: Point::ORIGIN,
             stay_ms: 0,
             lingers: false,
             has_lingered: false,
