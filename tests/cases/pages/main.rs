@@ -1,13 +1,16 @@
-//! Figures of the pages: each stands in a golden file, or a comment says what else it is.
+//! Figures of the pages: each stands in a golden file, or a comment says what else it is. Links of
+//! the pages: each leads somewhere.
 //!
 //! | module | content |
 //! | --- | --- |
 //! | [`section`] | a page, and the comments about its figures |
 //! | [`figures`] | numbers, and what makes them golden |
+//! | `links` | links from page to page |
 //!
 //! A page that is not in [`PAGES`] is not under the rule.
 
 mod figures;
+mod links;
 mod section;
 
 use std::fs;
