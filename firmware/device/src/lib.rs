@@ -16,6 +16,7 @@ extern crate std;
 
 pub mod convert;
 mod log;
+pub mod memory;
 pub mod meter;
 pub mod pilot;
 pub mod port;
@@ -23,8 +24,9 @@ pub mod ring;
 pub mod session;
 pub mod signal;
 
+pub use memory::Memory;
 pub use meter::{Mark, Meter};
-pub use pilot::{Memory, Pilot};
+pub use pilot::Pilot;
 pub use session::{Boot, Session};
 
 /// Silence of the host after which the device's last command is stale, milliseconds.

@@ -18,38 +18,24 @@
 //! A pilot used directly is a link without bytes. The session calls the same functions, so both
 //! give the same commands.
 
-use fieldline_planner::{
-    self as planner, CellKind, Config, FIELD_SIDE as SIDE, Output, StageTimer, State, Tuning,
-    Workspace, step,
-};
+use fieldline_planner::{self as planner, Config, Output, StageTimer, step};
 use fieldline_protocol::message::{
     self, Activity, Body, Command, Control, Correct, CorrectedTiles, CorrectionProgress, Cost,
-    Events, FIELD_SIDE, Fault, FieldRow, Finish, MAX_FRONTIERS, MAX_SCANS, Observation, Packet,
-    Path, Recall, Refusal, ResidualFrontier, Start, Status, Tile, Twist,
+    Events, Fault, Finish, MAX_SCANS, Observation, Packet, Recall, Refusal, Reply, Request, Start,
+    Status, Twist,
 };
-use heapless::Vec;
 
 use crate::STALE_MS;
 use crate::convert;
 use crate::log::{info, warning};
+use crate::memory::Memory;
 
-// The planner's rows and scans must fit into the wire's bounded lists.
-const _: () = assert!(SIDE == FIELD_SIDE && MAX_SCANS == 2);
+// The planner's scans and lists must fit into the wire's.
+const _: () = assert!(MAX_SCANS == 2);
 const _: () = assert!(planner::RECALLED_POINTS == message::RECALLED_POINTS);
 const _: () = assert!(planner::RECALLED_TRACK == message::RECALLED_TRACK);
 // A retry must fit between two observations and the end of a command.
 const _: () = assert!(Config::PERIODS_S.1 * 1000.0 < STALE_MS as f32);
-
-/// The planner's memory. The caller owns it, so that a board can place it.
-#[derive(Debug)]
-pub struct Memory<'a, const TILES: usize, const SLOTS: usize> {
-    /// Map and state of the strategy.
-    pub state: &'a mut State<TILES, SLOTS>,
-    /// Scratch memory of a step.
-    pub workspace: &'a mut Workspace,
-    /// The tuned constants of the next session. A chip keeps them in flash.
-    pub tuning: &'static Tuning,
-}
 
 /// State of a session, without the map.
 ///
@@ -376,85 +362,27 @@ impl Pilot {
         }
     }
 
-    /// Returns one map tile; `None` if nothing in it was ever seen.
-    #[must_use]
-    #[inline(never)]
-    pub fn tile<const TILES: usize, const SLOTS: usize>(
-        memory: &Memory<'_, TILES, SLOTS>,
-        x: i16,
-        y: i16,
-    ) -> Option<Tile> {
-        let cells = memory.state.tile(x, y)?;
-        let rows = memory.state.tile_skeleton(x, y);
-        Some(Tile {
-            x,
-            y,
-            cells: cells.iter().copied().collect(),
-            skeleton: rows.iter().flat_map(|row| row.to_le_bytes()).collect(),
-            closed_regions: memory.state.closed_regions(x, y),
-            given_up_regions: memory.state.given_up_regions(x, y),
-            visit_stamps: memory.state.visit_stamps(x, y),
+    /// Answers a request that is no hello and no observation.
+    ///
+    /// # Errors
+    /// [`Refusal`], as the request says; [`Refusal::OutOfOrder`] for a hello or an observation.
+    pub fn answer<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        memory: &mut Memory<'_, TILES, SLOTS>,
+        request: &Request,
+    ) -> Result<Reply, Refusal> {
+        Ok(match request {
+            Request::Control(control) => Reply::Control(self.control(memory, control)?),
+            Request::Hear(packet) => {
+                self.hear(memory, packet)?;
+                Reply::Heard
+            }
+            Request::Say => Reply::Say(self.say(memory)?),
+            Request::Correct(correct) => Reply::Corrected(self.correct(memory, correct)?),
+            Request::Tiles(part) => Reply::Corrected(self.tiles(memory, part)?),
+            Request::Recall(recall) => Reply::Corrected(self.recall(memory, recall)?),
+            _ => return memory.show(request).ok_or(Refusal::OutOfOrder),
         })
-    }
-
-    /// Returns one row of the field in the last window; `None` before the first window and for a
-    /// row beyond the last one.
-    #[must_use]
-    #[inline(never)]
-    pub fn field_row<const TILES: usize, const SLOTS: usize>(
-        memory: &Memory<'_, TILES, SLOTS>,
-        row: u8,
-    ) -> Option<FieldRow> {
-        memory
-            .workspace
-            .field_row(row)
-            .map(|found| field_row(row, &found))
-    }
-
-    /// Returns tractor point, shield, and the path without its first `from` cells.
-    #[must_use]
-    #[inline(never)]
-    pub fn path<const TILES: usize, const SLOTS: usize>(
-        memory: &Memory<'_, TILES, SLOTS>,
-        from: u8,
-    ) -> Path {
-        convert::wire_path(memory.state, from)
-    }
-
-    /// Returns the first [`MAX_FRONTIERS`] residual frontiers.
-    #[must_use]
-    #[inline(never)]
-    pub fn frontiers<const TILES: usize, const SLOTS: usize>(
-        memory: &Memory<'_, TILES, SLOTS>,
-    ) -> Vec<ResidualFrontier, MAX_FRONTIERS> {
-        let frontiers = memory.state.frontiers().iter();
-        frontiers
-            .take(MAX_FRONTIERS)
-            .map(convert::wire_frontier)
-            .collect()
-    }
-}
-
-/// Converts a field row for the wire: the origin in window cells, the cell kinds in two bits each.
-fn field_row(row: u8, found: &planner::FieldRow) -> FieldRow {
-    let scale = i32::from(found.scale.max(1));
-    let short = |cell: i32| cell.div_euclid(scale) as i16;
-    let kind = |kind: &CellKind| match kind {
-        CellKind::Free => 0,
-        CellKind::Obstacle => 1,
-        CellKind::Goal => 2,
-    };
-    let pack = |four: &[CellKind]| {
-        let bits = four.iter().enumerate();
-        bits.fold(0, |byte, (i, cell)| byte | kind(cell) << (2 * i))
-    };
-    FieldRow {
-        row,
-        origin_x: short(found.origin.x),
-        origin_y: short(found.origin.y),
-        scale: found.scale,
-        q: found.q.into_iter().collect(),
-        cells: found.kinds.chunks(4).map(pack).collect(),
     }
 }
 

@@ -7,8 +7,8 @@ use embedded_hal::digital::{InputPin, OutputPin};
 use embedded_io::{Error, ErrorKind, Read, ReadReady, Write};
 use fieldline_protocol::frame::MAX_LOG_BYTES;
 
+use crate::memory::Memory;
 use crate::meter::Meter;
-use crate::pilot::Memory;
 use crate::session::Session;
 
 /// The functions that the port needs from a board, beside its pins and its serial line.

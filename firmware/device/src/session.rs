@@ -25,8 +25,9 @@ use fieldline_protocol::{SCHEMA, VERSION};
 
 use crate::STALE_MS;
 use crate::log::{info, warning};
+use crate::memory::Memory;
 use crate::meter::{self, Mark, Meter, Stopwatch};
-use crate::pilot::{Memory, Pilot};
+use crate::pilot::Pilot;
 use crate::signal::Signal;
 
 pub use identity::{Boot, identity};
@@ -336,40 +337,12 @@ impl Session {
         request: &Request,
         memory: &mut Memory<'_, TILES, SLOTS>,
     ) {
-        let reply = match request {
-            Request::Control(control) => {
-                self.reset |= matches!(control, Control::Reset);
-                self.stale = false;
-                let status = self.pilot.control(memory, control);
-                status.map_or_else(Reply::Refused, Reply::Control)
-            }
-            Request::Tile { x, y } => Reply::Tile(Pilot::tile(memory, *x, *y)),
-            Request::FieldRow { row } => Reply::FieldRow(Pilot::field_row(memory, *row)),
-            Request::Frontiers => Reply::Frontiers(Pilot::frontiers(memory)),
-            Request::Path { from } => Reply::Path(Pilot::path(memory, *from)),
-            Request::Hear(packet) => {
-                let heard = self.pilot.hear(memory, packet);
-                heard.map_or_else(Reply::Refused, |()| Reply::Heard)
-            }
-            Request::Say => {
-                let said = self.pilot.say(memory);
-                said.map_or_else(Reply::Refused, Reply::Say)
-            }
-            Request::Correct(correct) => {
-                let progress = self.pilot.correct(memory, correct);
-                progress.map_or_else(Reply::Refused, Reply::Corrected)
-            }
-            Request::Tiles(part) => {
-                let progress = self.pilot.tiles(memory, part);
-                progress.map_or_else(Reply::Refused, Reply::Corrected)
-            }
-            Request::Recall(recall) => {
-                let progress = self.pilot.recall(memory, recall);
-                progress.map_or_else(Reply::Refused, Reply::Corrected)
-            }
-            // Other functions answer these.
-            Request::Hello { .. } | Request::Observation(_) => Reply::Refused(Refusal::OutOfOrder),
-        };
+        if let Request::Control(control) = request {
+            self.reset |= matches!(control, Control::Reset);
+            self.stale = false;
+        }
+        let reply = self.pilot.answer(memory, request);
+        let reply = reply.unwrap_or_else(Reply::Refused);
         self.reply_and_store(sequence, &reply);
     }
 

@@ -3,7 +3,7 @@
 use fieldline_device::session::{self, Boot};
 use fieldline_device::{Memory, Pilot, SLOTS, State, TILES};
 use fieldline_planner::{Tuning, Workspace};
-use fieldline_protocol::message::{Refusal, Reply, Request};
+use fieldline_protocol::message::{Reply, Request};
 
 use super::inside::{Inside, Look};
 use super::{End, Link, LinkError, LinkStats};
@@ -72,40 +72,19 @@ impl Link for Direct {
             let identity = session::identity(Boot::default(), TILES, SLOTS);
             return Ok(Reply::Hello(identity));
         }
-        self.with(|pilot, memory| answer(pilot, memory, request))
-            .map_err(|refusal| LinkError::Refused(refusal.to_string()))
+        let reply = self.with(|pilot, memory| match request {
+            Request::Observation(observation) => {
+                let command = pilot.observe(memory, observation, &mut ());
+                command.map(Reply::Command)
+            }
+            _ => pilot.answer(memory, request),
+        });
+        reply.map_err(|refusal| LinkError::Refused(refusal.to_string()))
     }
 
     fn end(&self) -> &dyn End {
         self
     }
-}
-
-/// Answers a request that is no hello.
-fn answer(
-    pilot: &mut Pilot,
-    memory: &mut Memory<'_, TILES, SLOTS>,
-    request: &Request,
-) -> Result<Reply, Refusal> {
-    Ok(match request {
-        Request::Control(control) => Reply::Control(pilot.control(memory, control)?),
-        Request::Observation(observation) => {
-            Reply::Command(pilot.observe(memory, observation, &mut ())?)
-        }
-        Request::Tile { x, y } => Reply::Tile(Pilot::tile(memory, *x, *y)),
-        Request::FieldRow { row } => Reply::FieldRow(Pilot::field_row(memory, *row)),
-        Request::Frontiers => Reply::Frontiers(Pilot::frontiers(memory)),
-        Request::Path { from } => Reply::Path(Pilot::path(memory, *from)),
-        Request::Hear(packet) => {
-            pilot.hear(memory, packet)?;
-            Reply::Heard
-        }
-        Request::Say => Reply::Say(pilot.say(memory)?),
-        Request::Correct(correct) => Reply::Corrected(pilot.correct(memory, correct)?),
-        Request::Tiles(part) => Reply::Corrected(pilot.tiles(memory, part)?),
-        Request::Recall(recall) => Reply::Corrected(pilot.recall(memory, recall)?),
-        Request::Hello { .. } => return Err(Refusal::OutOfOrder),
-    })
 }
 
 impl End for Direct {

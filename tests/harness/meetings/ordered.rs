@@ -1,7 +1,7 @@
 //! A planner that takes its goals in an order of the user's, as a link.
 
 use fieldline_device::session::{self, Boot};
-use fieldline_device::{Memory, Pilot, SLOTS, State, TILES, convert};
+use fieldline_device::{Memory, SLOTS, State, TILES, convert};
 use fieldline_planner::{Config, Goal, GoalLevel, Order, Tuning, Workspace, step};
 use fieldline_protocol::message::{
     Command, Control, Observation, Refusal, Reply, Request, Status, Twist,
@@ -111,10 +111,6 @@ impl Link for Ordered {
                 Reply::Control(self.status)
             }
             Request::Observation(observation) => Reply::Command(self.command(observation)?),
-            Request::Tile { x, y } => Reply::Tile(Pilot::tile(&self.memory(), *x, *y)),
-            Request::FieldRow { row } => Reply::FieldRow(Pilot::field_row(&self.memory(), *row)),
-            Request::Frontiers => Reply::Frontiers(Pilot::frontiers(&self.memory())),
-            Request::Path { from } => Reply::Path(Pilot::path(&self.memory(), *from)),
             Request::Hear(packet) => {
                 let config = self.config()?;
                 if let Some(packet) = convert::packet(packet) {
@@ -126,8 +122,9 @@ impl Link for Ordered {
                 let config = self.config()?;
                 Reply::Say(self.state.say(&config).map(|it| convert::wire_packet(&it)))
             }
-            Request::Correct(_) | Request::Tiles(_) | Request::Recall(_) => {
-                return Err(LinkError::Refused("nobody corrects this map".into()));
+            _ => {
+                let refused = || LinkError::Refused("nobody corrects this map".into());
+                self.memory().show(request).ok_or_else(refused)?
             }
         })
     }

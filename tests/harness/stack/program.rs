@@ -59,8 +59,10 @@ pub fn read(path: &Path) -> Result<Program, String> {
     let starts: Vec<u32> = program.keys().copied().collect();
     let ends = starts.iter().skip(1).copied().chain([range.end]);
     let mut stored = BTreeSet::new();
-    for (function, end) in program.iter_mut().zip(ends) {
+    let own_ends = own_ends(&elf);
+    for (function, next) in program.iter_mut().zip(ends) {
         let (&address, function) = function;
+        let end = own_ends.get(&address).map_or(next, |own| next.min(*own));
         stored.extend(walk(function, address..end, &range, &starts, |at| {
             let k = (at - start) as usize;
             let word = code.get(k..k + 4).unwrap_or(&[0; 4]);
@@ -155,6 +157,16 @@ fn marks(elf: &ElfFile32<'_>) -> BTreeMap<u32, bool> {
         (is_data || name.starts_with("$t")).then_some((symbol.address() as u32, is_data))
     });
     marks.collect()
+}
+
+/// Returns where each function of known size ends: what the linker fills up to the next one is no
+/// code.
+fn own_ends(elf: &ElfFile32<'_>) -> BTreeMap<u32, u32> {
+    let sized = elf.symbols().filter(|symbol| symbol.size() > 0);
+    sized
+        .map(|symbol| (symbol.address() as u32 & !1, symbol.size() as u32))
+        .map(|(address, size)| (address, address + size))
+        .collect()
 }
 
 /// Returns the functions within `code`, without what they do.

@@ -196,8 +196,8 @@ fn a_survey_maps_and_localises_and_never_moves_or_ends() {
         assert_eq!(command.velocity, Twist::default());
         assert!(command.location.is_some());
     }
-    assert!(Pilot::tile(&device.bench.memory(), 0, 0).is_some());
-    assert_eq!(Pilot::field_row(&device.bench.memory(), 0), None);
+    assert!(device.bench.memory().tile(0, 0).is_some());
+    assert_eq!(device.bench.memory().field_row(0), None);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use fieldline_protocol::message::{
     Refusal, Status, TRAIL_BYTES, TeamTile, Twist,
 };
 
-use super::{Device, Pilot, observation, start};
+use super::{Device, observation, start};
 
 /// Tile (40, k), far from the robot, all free.
 fn part(epoch: u16, numbers: core::ops::Range<u16>, last: bool) -> CorrectedTiles {
@@ -49,7 +49,7 @@ const fn progress(epoch: u16, next: u16, closed: bool) -> CorrectionProgress {
 }
 
 fn is_known(device: &mut Device, k: i16) -> bool {
-    Pilot::tile(&device.bench.memory(), 40, k).is_some()
+    device.bench.memory().tile(40, k).is_some()
 }
 
 #[test]

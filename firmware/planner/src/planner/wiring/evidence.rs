@@ -90,21 +90,10 @@ impl<const N: usize> Evidence<N> {
 
     /// Adds what a leg says on which odometry counted nothing: the robot may have moved as it was
     /// told, or a part of that. The last hypothesis is that odometry counts too little.
-    fn add_unseen(
-        &mut self,
-        scans: Scans<'_>,
-        odometry: &Shift,
-        size: f32,
-        told: impl Fn(f32) -> Shift,
-    ) {
+    fn add_unseen(&mut self, scans: Scans<'_>, odometry: &Shift, size: f32, told: &[Shift; 3]) {
         self.legs = self.legs.saturating_add(1);
         self.seen += size;
-        let odometry = best(scans, odometry);
-        let mut found = Values::default();
-        for part in PARTS {
-            found = found.better(best(scans, &told(part)));
-        }
-        self.add(N - 1, &odometry, &found);
+        self.add(N - 1, &best(scans, odometry), &best_of(scans, told));
     }
 
     /// Returns the hypothesis that is told.
@@ -159,10 +148,11 @@ impl Evidence<{ TURNS.len() }> {
     /// Adds what a leg says on which odometry counted nothing of a turn that was told.
     #[inline(never)]
     pub(super) fn add_unseen_turn(&mut self, scans: Scans<'_>, motion: &Shift, told_rad: f32) {
-        self.add_unseen(scans, motion, told_rad.abs(), |part| Shift {
+        let told = PARTS.map(|part| Shift {
             turn_rad: part * told_rad,
             ..*motion
         });
+        self.add_unseen(scans, motion, told_rad.abs(), &told);
     }
 }
 
@@ -185,12 +175,23 @@ impl Evidence<{ WAYS.len() }> {
     /// Adds what a leg says on which odometry counted nothing of a way that was told.
     #[inline(never)]
     pub(super) fn add_unseen_way(&mut self, scans: Scans<'_>, motion: &Shift, told_m: f32) {
-        self.add_unseen(scans, motion, told_m.abs(), |part| Shift {
+        let told = PARTS.map(|part| Shift {
             x_m: part * told_m,
             y_m: 0.0,
             ..*motion
         });
+        self.add_unseen(scans, motion, told_m.abs(), &told);
     }
+}
+
+/// Returns how well the beams agree under the best of some motions.
+#[inline(never)]
+fn best_of(scans: Scans<'_>, motions: &[Shift]) -> Values {
+    let mut found = Values::default();
+    for motion in motions {
+        found = found.better(best(scans, motion));
+    }
+    found
 }
 
 /// Turn or way with and against the command.
