@@ -5,6 +5,7 @@ pub mod baseline;
 pub mod bringup;
 pub mod campaign;
 pub mod fence;
+pub mod known_map;
 pub mod link;
 pub mod live;
 pub mod metrics;

@@ -1,4 +1,4 @@
-//! Mission files: what a robot may not enter, where it drives after its exploration, and what it
+//! Mission files: what a robot knows, what it may not enter, where it drives after its exploration, and what it
 //! may spend. Strict TOML; docs/MISSIONS.md explains every key.
 //!
 //! ```toml
@@ -16,17 +16,21 @@
 use core::fmt;
 use core::ops::Range;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use toml::{Spanned, Value};
 
 use crate::fence::Polygon;
+use crate::known_map::pose_of;
 use crate::near;
 use crate::trial::itinerary::{MOST_PAUSES, Pause};
+use crate::world::Start;
 
 /// The keys, each with the option of `explore` that means the same.
-pub const KEYS: [(&str, &str); 8] = [
+pub const KEYS: [(&str, &str); 10] = [
+    ("known", "known"),
+    ("known_pose_m_deg", "known-pose"),
     ("bounds_m", "bounds"),
     ("no_go_m", "no-go"),
     ("goto_m", "goto"),
@@ -67,6 +71,10 @@ impl core::error::Error for MissionFileError {}
 /// A mission as a file tells it. A key that is not in the file is empty or `None`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MissionFile {
+    /// The map that the robot knows at its start.
+    pub known: Option<PathBuf>,
+    /// Where it then stands in that map's frame.
+    pub known_pose: Option<Start>,
     /// The robot stays inside of each.
     pub bounds: Vec<Polygon>,
     /// The robot stays out of each.
@@ -92,6 +100,8 @@ type Places = Vec<Spanned<Vec<Value>>>;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Keys {
+    known: Option<Spanned<String>>,
+    known_pose_m_deg: Option<Spanned<Vec<Value>>>,
     bounds_m: Option<Spanned<Vec<Spanned<Places>>>>,
     no_go_m: Option<Spanned<Vec<Spanned<Places>>>>,
     goto_m: Option<Spanned<Places>>,
@@ -133,11 +143,13 @@ pub fn parse(file: &str, text: &str) -> Result<MissionFile, MissionFileError> {
         let span = error.span().unwrap_or_default();
         fault((span, with_hint(error.message())))
     })?;
-    mission(&keys, text).map_err(fault)
+    mission(&keys, (file, text)).map_err(fault)
 }
 
-fn mission(keys: &Keys, text: &str) -> Result<MissionFile, Fault> {
+fn mission(keys: &Keys, (file, text): (&str, &str)) -> Result<MissionFile, Fault> {
     let spans = [
+        keys.known.as_ref().map(Spanned::span),
+        keys.known_pose_m_deg.as_ref().map(Spanned::span),
         keys.bounds_m.as_ref().map(Spanned::span),
         keys.no_go_m.as_ref().map(Spanned::span),
         keys.goto_m.as_ref().map(Spanned::span),
@@ -150,6 +162,8 @@ fn mission(keys: &Keys, text: &str) -> Result<MissionFile, Fault> {
     let there = KEYS.iter().zip(spans);
     let lines = there.filter_map(|((key, _), span)| Some((*key, line_of(text, &span?))));
     Ok(MissionFile {
+        known: keys.known.as_ref().map(|it| beside(file, it.get_ref())),
+        known_pose: keys.known_pose_m_deg.as_ref().map(known_pose).transpose()?,
         bounds: polygons("bounds_m", keys.bounds_m.as_ref())?,
         no_go: polygons("no_go_m", keys.no_go_m.as_ref())?,
         goals_m: match &keys.goto_m {
@@ -162,6 +176,24 @@ fn mission(keys: &Keys, text: &str) -> Result<MissionFile, Fault> {
         home_at_ms: keys.home_at_s.as_ref().map(home_at).transpose()?,
         pauses: pauses(keys.pauses_s.as_ref())?,
         lines: lines.collect(),
+    })
+}
+
+/// Returns a path that is relative to the mission file.
+fn beside(file: &str, path: &str) -> PathBuf {
+    Path::new(file).parent().unwrap_or(Path::new("")).join(path)
+}
+
+fn known_pose(value: &Spanned<Vec<Value>>) -> Result<Start, Fault> {
+    let numbers: Option<Vec<f64>> = value.get_ref().iter().map(number).collect();
+    let numbers = numbers.as_deref().map(<[f64; 3]>::try_from);
+    match numbers {
+        Some(Ok(numbers)) => pose_of(numbers),
+        _ => None,
+    }
+    .ok_or_else(|| {
+        let what = "known_pose_m_deg is [x, y, degrees]: metres within 3200, degrees within 360";
+        (value.span(), what.into())
     })
 }
 
@@ -314,12 +346,15 @@ mod tests {
     #[test]
     fn a_file_means_what_its_options_mean() {
         let text = "# A floor without its stairs.\n\
+                    known = \"maps/floor.yaml\"\nknown_pose_m_deg = [1, 2.5, 90]\n\
                     bounds_m = [[[6, 3], [18, 11]]]\n\
                     no_go_m = [[[13.5, 8], [14.5, 8], [14, 9]]]\n\
                     goto_m = [[8, 5], [15, 7.5]]\n\
                     then = \"home\"\n\
                     range_m = 300\ntime_s = 600\nhome_at_s = 90.5\npauses_s = [[60, 80]]\n";
-        let mission = parse("m.toml", text).expect("a mission");
+        let mission = parse("tour/m.toml", text).expect("a mission");
+        assert_eq!(mission.known, Some("tour/maps/floor.yaml".into()));
+        assert_eq!(mission.known_pose, pose_of([1.0, 2.5, 90.0]));
         let polygon = |text: &str| text.parse::<Polygon>().expect("a polygon");
         assert_eq!(mission.bounds, [polygon("6,3,18,11")]);
         assert_eq!(mission.no_go, [polygon("13.5,8,14.5,8,14,9")]);
@@ -332,7 +367,7 @@ mod tests {
             to_ms: 80_000,
         };
         assert_eq!(mission.pauses, [pause]);
-        assert_eq!(mission.lines.first(), Some(&("bounds_m", 2)));
+        assert_eq!(mission.lines.first(), Some(&("known", 2)));
         assert_eq!(mission.lines.len(), KEYS.len());
         assert_eq!(
             parse("m.toml", "").expect("nothing"),
@@ -348,6 +383,8 @@ mod tests {
                 2,
                 "unknown key bound_m; did you mean bounds_m?",
             ),
+            ("known_pose_m_deg = [1, 2]", 1, "[x, y, degrees]"),
+            ("known = 3", 1, "invalid type"),
             ("goto = [[1, 2]]", 1, "did you mean goto_m?"),
             ("then = \"hoem\"", 1, "give \"home\""),
             ("range_m = 0", 1, "1 to 65535"),

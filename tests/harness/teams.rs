@@ -8,6 +8,7 @@ mod tables;
 
 use core::ops::Range;
 
+use host_sim::fence::Fence;
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
 use host_sim::report::TeamReport;
@@ -47,6 +48,8 @@ pub struct TeamRun<'a> {
     pub start_error: &'a str,
     /// Where loops are closed.
     pub slam: SlamPlace,
+    /// Where the robots may be; everywhere if `None`.
+    pub fence: Option<&'a Fence>,
     /// Seed of the noise.
     pub seed: u64,
 }
@@ -66,6 +69,7 @@ impl<'a> TeamRun<'a> {
             odometry: OdometryProfile::Truth,
             start_error: "",
             slam: SlamPlace::Off,
+            fence: None,
             seed: 0,
         }
     }
@@ -101,6 +105,7 @@ impl<'a> TeamRun<'a> {
             odometry: self.odometry,
             localise: self.odometry != OdometryProfile::Truth,
             slam: self.slam,
+            fence: self.fence.cloned().unwrap_or_default(),
             ..Mission::default()
         };
         let start_error = match self.start_error {

@@ -5,6 +5,7 @@ use anyhow::{Result, bail};
 use fieldline_protocol::message::{Budget, UnevenGround};
 use host_sim::baseline::bvp_papers::Relaxation;
 use host_sim::fence::{Fence, Polygon};
+use host_sim::known_map::KnownMap;
 use host_sim::link::spec::LinkSpec;
 use host_sim::robot::Limits;
 use host_sim::slam::SlamPlace;
@@ -145,6 +146,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         patrol_s: args.patrol_for,
         space: space(args),
         fence: fence(args)?,
+        known: known(args, uneven_ground.is_some())?,
         orders: orders(args)?,
         relaxation: relaxation(args),
         impatience_s: args.tdbvp_impatience.map_or(IMPATIENCE_S, |it| it.0),
@@ -189,6 +191,37 @@ fn fence(args: &ExploreArgs) -> Result<Fence> {
         Ok(()) => Ok(fence),
         Err(reason) => bail!("--bounds and --no-go: {reason}"),
     }
+}
+
+/// Reads the map that the robot knows at its start.
+fn known(args: &ExploreArgs, is_uneven: bool) -> Result<Option<KnownMap>> {
+    let Some(path) = &args.known else {
+        if args.known_pose.is_some() {
+            bail!("--known-pose is a place in a known map; give the map with --known");
+        }
+        return Ok(None);
+    };
+    let file = path.display();
+    if on_device(&args.strategy).is_none() {
+        bail!(
+            "--known {file} is loaded into a device, and --strategy {} runs on the host; take a \
+             strategy on the device, or leave --known out",
+            args.strategy
+        );
+    }
+    if is_uneven {
+        bail!("--known {file} has no heights of the ground; say --ground flat, or leave it out");
+    }
+    if args.slam != SlamPlace::Off {
+        bail!(
+            "--slam makes the map of scans alone, and would take what --known {file} has out of \
+             it; say --slam off, or leave --known out"
+        );
+    }
+    if args.team.is_some() {
+        bail!("--known {file} is for a robot alone; leave --known or --team out");
+    }
+    Ok(Some(KnownMap::load(path, args.known_pose)?))
 }
 
 /// Returns what the robot does after its exploration.

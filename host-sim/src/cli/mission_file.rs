@@ -30,6 +30,8 @@ pub(super) fn applied(args: &ExploreArgs) -> Result<(ExploreArgs, Option<String>
 
 fn with(args: &ExploreArgs, mission: MissionFile) -> ExploreArgs {
     let mut args = args.clone();
+    args.known = args.known.or(mission.known);
+    args.known_pose = args.known_pose.or(mission.known_pose);
     args.bounds.extend(mission.bounds);
     args.no_go.extend(mission.no_go);
     args.goto.extend(mission.goals_m);
@@ -43,6 +45,8 @@ fn with(args: &ExploreArgs, mission: MissionFile) -> ExploreArgs {
 
 fn is_given(args: &ExploreArgs, option: &str) -> bool {
     match option {
+        "known" => args.known.is_some(),
+        "known-pose" => args.known_pose.is_some(),
         "bounds" => !args.bounds.is_empty(),
         "no-go" => !args.no_go.is_empty(),
         "goto" => !args.goto.is_empty(),
@@ -73,7 +77,11 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("m.toml");
         let path = file.to_string_lossy();
+        let map = folder.path().join("map.yaml");
+        let map = map.to_string_lossy();
         for ((key, option), (value, word)) in KEYS.iter().zip([
+            ("\"map.yaml\"", &*map),
+            ("[1, 2, 90]", "1,2,90"),
             ("[[[0, 0], [1, 1]]]", "0,0,1,1"),
             ("[[[0, 0], [1, 1]]]", "0,0,1,1"),
             ("[[1, 2]]", "1,2"),

@@ -6,6 +6,7 @@ use anyhow::{Context as _, Result, bail};
 use clap::Args;
 
 use host_sim::baseline::bvp_papers::Relaxation;
+use host_sim::fence::Polygon;
 use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::picture::{TeamScene, team_png};
@@ -73,6 +74,14 @@ pub(super) struct TeamArgs {
         allow_hyphen_values = true
     )]
     join: Vec<Appointment>,
+    /// Polygon that all robots stay inside: corners x0,y0,x1,y1,... in metres of the team's frame,
+    /// which is the world's, or two corners of a rectangle; given again, they stay inside of all
+    #[arg(long, value_name = "CORNERS", allow_hyphen_values = true)]
+    bounds: Vec<Polygon>,
+    /// Polygon that all robots stay out of, as --bounds; may be given again. All polygons together
+    /// have at most 32 corners
+    #[arg(long, value_name = "CORNERS", allow_hyphen_values = true)]
+    no_go: Vec<Polygon>,
     #[command(flatten)]
     space: SpaceArgs,
     /// Link of all robots, or a list with the link of each, as in direct,direct,qemu [default:
@@ -184,6 +193,8 @@ fn common(args: &TeamArgs, start: usize) -> ExploreArgs {
         odometry: Some(args.odometry),
         pace: args.pace.clone(),
         space: args.space.clone(),
+        bounds: args.bounds.clone(),
+        no_go: args.no_go.clone(),
         slam: args.slam,
         robot: args.robot.clone(),
         common: args.common.clone(),

@@ -3,12 +3,14 @@
 use core::time::Duration;
 
 use fieldline_protocol::message::UnevenGround;
+use host_sim::known_map::pose_of;
 use host_sim::robot::Limits;
 use host_sim::slam::SlamPlace;
 use host_sim::spec::{self, SpecError};
 use host_sim::trial::itinerary::Pause;
 use host_sim::trial::space::Area;
 use host_sim::trial::uneven;
+use host_sim::world::Start;
 
 use super::args::Impatience;
 use super::live::LiveArg;
@@ -117,6 +119,17 @@ pub(super) fn place(text: &str) -> Result<[f64; 2], String> {
     }
 }
 
+/// Parses where a robot stands in a known map.
+pub(super) fn known_pose(text: &str) -> Result<Start, String> {
+    let numbers = spec::numbers(text);
+    let numbers = numbers.as_deref().map(<[f64; 3]>::try_from);
+    match numbers {
+        Some(Ok(numbers)) => pose_of(numbers),
+        _ => None,
+    }
+    .ok_or_else(|| "give x,y,degrees: metres within 3200, degrees within 360".into())
+}
+
 /// Parses a share; returns thousandths.
 pub(super) fn until(text: &str) -> Result<u16, String> {
     match text.parse::<f64>() {
@@ -214,6 +227,10 @@ mod tests {
             "0,0,nan,8",
         ] {
             assert!(area(bad).is_err(), "{bad}");
+        }
+        assert_eq!(known_pose("1,-2,180").map(|it| it.x_m), Ok(1.0));
+        for bad in ["1,2", "1,2,3,4", "1,2,361", "4000,0,0", "1,2,nan", "x"] {
+            assert!(known_pose(bad).is_err(), "{bad}");
         }
         assert_eq!((home_at("0"), home_at("90.5")), (Ok(0), Ok(90_500)));
         assert!(home_at("-1").is_err() && home_at("nan").is_err() && home_at("5e6").is_err());

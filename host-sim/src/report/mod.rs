@@ -39,7 +39,7 @@ pub use loop_closing::{GivenUp, LoopClosing};
 pub use made_by::MadeBy;
 pub use measures::{Coverage, Loops, MapErrors, Patrol, Safety, WallError};
 pub use outcome::{LiveRequest, Outcome, ResidualFrontier, Trip};
-pub use settings::{Fence, Noise, Relaxation, SpaceField};
+pub use settings::{Fence, Known, Noise, Relaxation, SpaceField};
 pub use team::TeamReport;
 pub use true_ground::TrueGround;
 
@@ -72,6 +72,9 @@ pub struct Report {
     pub worth: Option<f64>,
     /// Area, target and impatience of strategies sbpf and esbpf; `null` for other strategies.
     pub space_field: Option<SpaceField>,
+    /// What the device knew before its first step; the key is missing if that was nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub known: Option<Known>,
     /// Where the robot had to stay; the key is missing if it might be everywhere.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fence: Option<Fence>,

@@ -1,4 +1,4 @@
-//! Settings of a run that are more than a word: fence, relaxation, area, noise.
+//! Settings of a run that are more than a word: known map, fence, relaxation, area, noise.
 //!
 //! The fence also has the greatest depth of the true hull in what was forbidden.
 
@@ -13,6 +13,17 @@ pub struct Fence {
     pub no_go_m: Vec<Vec<[f64; 2]>>,
     /// Greatest depth of the true hull in what was forbidden, metres.
     pub deepest_m: f64,
+}
+
+/// What the device knew before its first step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Known {
+    /// The map's file.
+    pub file: String,
+    /// Tiles that the device was told.
+    pub tiles: usize,
+    /// Area of the free cells and of the obstacles in them, square metres.
+    pub known_m2: f64,
 }
 
 /// The relaxation of a stored potential.

@@ -77,7 +77,7 @@ impl Report {
         lines.join("\n")
     }
 
-    /// Returns lines about loops, patrol, fence and trips.
+    /// Returns lines about loops, patrol, known map, fence and trips.
     fn way(&self) -> Vec<String> {
         let mut lines = Vec::new();
         let Loops { islands, circled } = self.loops;
@@ -89,6 +89,12 @@ impl Report {
             lines.push(format!(
                 "  patrol    oldest rail {:.0} s, mean age {:.0} s",
                 patrol.max_rail_age_s, patrol.mean_rail_age_s
+            ));
+        }
+        if let Some(known) = &self.known {
+            lines.push(format!(
+                "  known     {:.0} m2 in {} tiles before the first step, from {}",
+                known.known_m2, known.tiles, known.file
             ));
         }
         if let Some(fence) = &self.fence {

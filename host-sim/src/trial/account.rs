@@ -11,6 +11,7 @@ use super::mirror::Mirror;
 use super::relief::Relief;
 use super::snapshot::Window;
 use super::{Setup, Survey, record};
+use crate::link::correction::MapCorrection;
 use crate::metrics::{Coverage, Footing, GroundTruth};
 use crate::report::tum::Stamped;
 use crate::robot::OdometryModel;
@@ -113,6 +114,14 @@ impl Survey for Account {
 
     fn mirror(&mut self) -> Option<&mut Mirror> {
         Some(&mut self.mirror)
+    }
+
+    /// A map of the true poses knows it as well.
+    fn know(&mut self, known: &MapCorrection) {
+        self.mirror.correct(known);
+        if let Some(seen) = &mut self.seen {
+            seen.correct(known);
+        }
     }
 
     fn relief(&self, window: &Window) -> Option<Relief> {

@@ -4,6 +4,8 @@
 //! The copy follows the correction, so it still equals the device's map. If pictures are wanted,
 //! the map is read before and after the largest corrections.
 //!
+//! A device may be told before its first step what is known already: the tiles of a saved map.
+//!
 //! A device that was reset has lost its session. If the run resumes, it gets the same session, and
 //! its map back by a correction with every tile of the copy, and by a recall what lies around its
 //! robot and how it came there. It is told where home is, what is left of its budget and which
@@ -12,7 +14,7 @@
 
 use fieldline_device::convert::quantity;
 use fieldline_planner::geometry::Pose;
-use fieldline_protocol::message::{Command, Control, Observation, Start};
+use fieldline_protocol::message::{Command, Control, Observation, Start, Status};
 
 use super::itinerary::Itinerary;
 use super::map_copy::MapCopy;
@@ -102,6 +104,29 @@ fn leave_out_smallest(wanted: usize, corrections: &mut Vec<Corrected>) {
         };
         corrections.remove(smallest);
     }
+}
+
+/// Begins the session, and tells the device what is known before its first step.
+pub(super) fn begin(setup: &Setup, cast: &mut Cast<'_>) -> Result<Status, LinkError> {
+    let mut answer = session(setup, cast);
+    for _ in 0..MOST_RESETS {
+        if !setup.resumes || answer != Err(LinkError::Reset) {
+            break;
+        }
+        answer = session(setup, cast);
+    }
+    if let (Ok(Status::Exploring), Some(known)) = (&answer, &setup.known) {
+        cast.survey.know(known);
+    }
+    answer
+}
+
+fn session(setup: &Setup, cast: &mut Cast<'_>) -> Result<Status, LinkError> {
+    let status = cast.link.control(&Control::Start(setup.start.clone()))?;
+    if let (Status::Exploring, Some(known)) = (status, &setup.known) {
+        cast.link.correct(known)?;
+    }
+    Ok(status)
 }
 
 /// Makes a step; a device that was reset gets its session and its map back, if the run resumes.

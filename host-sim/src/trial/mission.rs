@@ -16,6 +16,7 @@ use super::itinerary::Orders;
 use super::space::SpaceMission;
 use crate::baseline::bvp_papers::Relaxation;
 use crate::fence::Fence;
+use crate::known_map::KnownMap;
 use crate::robot::presets::DEFAULT;
 use crate::robot::{
     Disturbances, DriveLimits, Footprint, Lidar, Limits, Miswiring, OdometryModel, OdometryNoise,
@@ -98,6 +99,8 @@ pub struct Mission {
     pub period_ms: u32,
     /// Bounds and no-go polygons; for strategies on the device.
     pub fence: Fence,
+    /// What the device knows before its first step; for strategies on the device, on flat ground.
+    pub known: Option<KnownMap>,
     /// What the robot does after its exploration; for strategies on the device.
     pub orders: Orders,
     /// Compare every heading with that of the converged window.
@@ -146,6 +149,7 @@ impl Default for Mission {
             relaxation: Relaxation::DEFAULT,
             period_ms: SimConfig::default().period_ms,
             fence: Fence::default(),
+            known: None,
             orders: Orders::default(),
             check_field: false,
             snapshots: 0,

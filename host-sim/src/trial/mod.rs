@@ -37,6 +37,7 @@ use fieldline_protocol::message::{
     Command, Control, Location, Observation, Quality, Start, Status, Twist,
 };
 
+use crate::link::correction::MapCorrection;
 use crate::link::{Link, LinkError};
 use crate::report::tum::Stamped;
 use freeze::FreezeDetector;
@@ -77,6 +78,9 @@ pub trait Survey {
         self.mirror().map(|mirror| mirror as &mut dyn MapCopy)
     }
 
+    /// Takes what the device gets to know before its first step.
+    fn know(&mut self, _known: &MapCorrection) {}
+
     /// Returns heights and preferences in a window that the planner solved; `None` on flat ground.
     fn relief(&self, _window: &Window) -> Option<Relief> {
         None
@@ -100,6 +104,8 @@ pub struct Setup {
     pub orders: Orders,
     /// The map is corrected during the run, so coverage is judged by a map of the true poses.
     pub corrects: bool,
+    /// The tiles that the device gets before its first step, as a correction of an empty map.
+    pub known: Option<MapCorrection>,
 }
 
 /// The parts of a run.
@@ -123,7 +129,7 @@ pub struct Cast<'a> {
 pub fn run(setup: &Setup, cast: &mut Cast<'_>) -> Record {
     let mut record = Record::default();
     let mut series = Series::new(setup.snapshots);
-    record.ending = match cast.link.control(&Control::Start(setup.start.clone())) {
+    record.ending = match corrector::begin(setup, cast) {
         Ok(Status::Fault(fault)) => Ending::Fault(fault),
         Ok(_) => explore(setup, cast, &mut record, &mut series),
         Err(error) => Ending::Link(error),

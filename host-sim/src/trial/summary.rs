@@ -36,6 +36,7 @@ pub(super) fn report(
         order: order(mission).map(|it| wording::order(it).into()),
         worth: order(mission).map(|it| it.worth().to_num()),
         space_field: space_field(mission, world),
+        known: None,
         fence: fence(mission, simulator),
         trips: record.trips.clone(),
         live_requests: record.live_requests.clone(),

@@ -4,6 +4,7 @@
 //! | --- | --- |
 //! | uneven, and the planner takes it for flat | the robot may fall or tip over |
 //! | more floor than tiles in the device's map | the map will be full |
+//! | what the picture of a known map may hide | as of a world's picture |
 //!
 //! A tile is 3.2 m a side. Metres.
 
@@ -24,7 +25,9 @@ const TILE_M: f64 = 3.2;
 #[must_use]
 pub fn surprises(mission: &Mission, world: &World) -> Vec<String> {
     let lines = [uneven(mission, world), large(mission, world)];
-    lines.into_iter().flatten().collect()
+    let known = mission.known.iter();
+    let known = known.flat_map(|map| map.notes.iter().map(|it| format!("{}: {it}", map.file)));
+    lines.into_iter().flatten().chain(known).collect()
 }
 
 /// Uneven ground that the planner does not expect.

@@ -177,6 +177,7 @@ fn trial(link: &mut Script, body: &mut Point, interrupt_ms: u32) -> Record {
         resumes: false,
         orders: Orders::default(),
         corrects: false,
+        known: None,
     };
     let mut cast = Cast {
         link,

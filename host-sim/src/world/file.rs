@@ -52,6 +52,18 @@ const FARTHEST_M: f64 = 3_000.0;
 
 /// Reads a world file, checks it and builds the world.
 pub(super) fn load(path: &Path) -> Result<World, WorldError> {
+    let (loader, document) = read(path)?;
+    loader.build(&document)
+}
+
+/// Reads what the picture of a world file knows, and what may surprise in it. Heights and starts
+/// are checked and not used.
+pub(super) fn load_plan(path: &Path) -> Result<(Occupancy, Vec<String>), WorldError> {
+    let (loader, document) = read(path)?;
+    loader.plan(&document)
+}
+
+fn read(path: &Path) -> Result<(Loader<'_>, Node), WorldError> {
     let file = path.display().to_string();
     let text = fs::read_to_string(path).map_err(|e| WorldError::Unreadable {
         file: file.clone(),
@@ -61,7 +73,7 @@ pub(super) fn load(path: &Path) -> Result<World, WorldError> {
         file: file.clone(),
         reason,
     })?;
-    Loader { path, file }.build(&document)
+    Ok((Loader { path, file }, document))
 }
 
 /// The file that is read, for paths and messages.
@@ -115,6 +127,18 @@ impl Loader<'_> {
         };
         self.check_starts(&mut world)?;
         Ok(world)
+    }
+
+    /// Reads the walls alone, cut to their known part, and turned.
+    fn plan(&self, document: &Node) -> Result<(Occupancy, Vec<String>), WorldError> {
+        let keys = Table::new("", document, &KEYS).map_err(|bad| self.value(bad))?;
+        let plan = Plan::read(&keys).map_err(|bad| self.value(bad))?;
+        let Some(name) = plan.image else {
+            return Err(self.value(keys.bad("image", "missing; give the picture of the map")));
+        };
+        let (walls, notes) = self.walls(name, &plan)?;
+        self.check_extent(&walls, &keys)?;
+        Ok((Self::cut(&walls, &plan), notes))
     }
 
     /// Refuses a world of which no start can be used. Notes those that cannot.

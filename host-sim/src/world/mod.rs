@@ -111,6 +111,15 @@ impl World {
         file::load(path)
     }
 
+    /// Reads what the picture of a world file knows, and notes on what may surprise in it. Heights
+    /// and starts of the file do not count.
+    ///
+    /// # Errors
+    /// As [`WorldError`].
+    pub fn load_plan(path: &Path) -> Result<(Occupancy, Vec<String>), WorldError> {
+        file::load_plan(path)
+    }
+
     /// Draws a built-in world; [`builtins`] lists them.
     #[must_use]
     pub fn builtin(name: &str) -> Option<Self> {

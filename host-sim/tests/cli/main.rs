@@ -4,6 +4,7 @@ mod campaigns;
 mod commands;
 mod ends;
 mod errands;
+mod known_maps;
 mod mission_files;
 #[cfg(feature = "record")]
 mod recordings;

@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 
+use crate::refusals::refused;
 use crate::{FILES, files, folder, outcome, reports};
 
 #[test]
@@ -64,6 +65,44 @@ fn a_team_leaves_a_folder_of_its_own_and_one_of_each_robot() {
     ];
     assert_eq!(files(&run), of_team);
     assert_eq!(files(&run.join("robot-1")), FILES);
+}
+
+#[test]
+fn all_robots_of_a_team_keep_to_the_bounds() {
+    let folder = folder();
+    let team = [
+        "team", "office", "--robots", "3", "--json", "--link", "direct",
+    ];
+    let bounds = ["--bounds=6,3,18,11", "--no-go=13.5,8,14.5,9"];
+    let (status, stdout, stderr) = outcome(&folder, &[&team[..], &bounds].concat());
+    assert_eq!(status, 0, "{stderr}");
+    let report = &reports(&stdout)[0];
+    let deepest = |report: &Value| report["fence"]["deepest_m"].as_f64().expect("metres");
+    let robots = report["robots"].as_array().expect("robots");
+    let each: Vec<f64> = robots.iter().map(deepest).collect();
+    assert!(each.iter().all(|it| *it < 0.1), "{each:?}");
+    assert_eq!(deepest(report), each.iter().copied().fold(0.0, f64::max));
+    assert_eq!(
+        report["fence"]["bounds_m"][0]
+            .as_array()
+            .expect("corners")
+            .len(),
+        4
+    );
+    // What lies beyond them is known less.
+    assert!(report["coverage"]["fraction"].as_f64().expect("a share") < 0.9);
+
+    let no_room = "where --bounds and --no-go let them stand";
+    for (bounds, words) in [
+        ("--bounds=0,0,3,3", no_room),
+        ("--bounds=11.4,6.4,12.6,7.6", no_room),
+        ("--bounds=0,0,9,9,0,9,9,0", "--bounds and --no-go: "),
+    ] {
+        refused(&folder, &[&team[..], &[bounds]].concat(), &[words]);
+    }
+    let baseline = ["--strategy", "bvp", "--radio", "off", "--bounds=6,3,18,11"];
+    let baseline = ["team", "office"].iter().chain(&baseline).copied();
+    refused(&folder, &baseline.collect::<Vec<_>>(), &["knows no bounds"]);
 }
 
 /// The second robot is told a wrong start, and finds out how its map lies in the team's.

@@ -68,6 +68,7 @@ fn witnessed(link: &mut dyn Link, world: &World) -> (Record, Vec<Period>) {
         resumes: false,
         orders: Orders::default(),
         corrects: false,
+        known: None,
     };
     let mut body = Witness {
         robot,

@@ -8,6 +8,7 @@ mod endings;
 mod fences;
 mod full;
 mod generated;
+mod known_maps;
 mod links;
 mod localise;
 mod localise_parts;

@@ -3,6 +3,7 @@
 mod claims;
 mod drift;
 mod dropout;
+mod fences;
 mod full;
 mod meetings;
 mod slam;

@@ -14,6 +14,7 @@ use host_sim::slam::SlamPlace;
 use host_sim::slam::particles::ParticleSpec;
 use host_sim::trial::itinerary::Pause;
 use host_sim::trial::space::Area;
+use host_sim::world::Start;
 
 use super::words::{
     FaultArg, GroundArg, Impatience, LogArg, OdometryArg, Place, PrecisionArg, PreferenceArg,
@@ -24,8 +25,9 @@ use crate::cli::live::LiveArg;
 use crate::cli::robot::RobotArgs;
 use crate::cli::strategies;
 use crate::cli::values::{
-    area, budget, failing, ground_parameters, home_at, impatience, imu_noise, laser_noise, live,
-    patrol_for, pause, people, place, slam_place, snapshots, start, sweeps, wait, working,
+    area, budget, failing, ground_parameters, home_at, impatience, imu_noise, known_pose,
+    laser_noise, live, patrol_for, pause, people, place, slam_place, snapshots, start, sweeps,
+    wait, working,
 };
 
 #[derive(Clone, Debug, Args)]
@@ -120,6 +122,14 @@ pub(in crate::cli) struct ExploreArgs {
     /// have at most 32 corners
     #[arg(long, value_name = "CORNERS", allow_hyphen_values = true)]
     pub(in crate::cli) no_go: Vec<Polygon>,
+    /// Saved map (YAML for ROS map servers) that the robot knows at its start: it explores what the
+    /// map leaves unknown
+    #[arg(long, value_name = "MAP.yaml")]
+    pub(in crate::cli) known: Option<PathBuf>,
+    /// Where the robot stands in the frame of --known at its start: metres and degrees [default:
+    /// that frame is the world's]
+    #[arg(long, value_name = "X,Y,DEG", value_parser = known_pose, allow_hyphen_values = true)]
+    pub(in crate::cli) known_pose: Option<Start>,
     /// Places to drive to after the exploration, in metres of the world's frame
     #[arg(
         long,
@@ -144,8 +154,8 @@ pub(in crate::cli) struct ExploreArgs {
     /// Simulated seconds from which to which the robot stands and waits; may be given again
     #[arg(long, value_name = "A-B", value_parser = pause)]
     pub(in crate::cli) pause: Vec<Pause>,
-    /// File of a mission: bounds, no-go polygons, goals, way home, budget and pauses, as the
-    /// options say them (docs/MISSIONS.md)
+    /// File of a mission: known map, bounds, no-go polygons, goals, way home, budget and pauses, as
+    /// the options say them (docs/MISSIONS.md)
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) mission: Option<PathBuf>,
     /// Simulated seconds without a new place after which tdbvp follows a path to what is left to

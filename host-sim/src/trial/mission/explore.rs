@@ -8,9 +8,10 @@ use fieldline_protocol::message as wire;
 use thiserror::Error;
 
 use super::Mission;
+use crate::known_map::{KnownMap, Loaded};
 use crate::link::{Link, LinkError};
-use crate::report::Report;
 use crate::report::tum::Stamped;
+use crate::report::{Known, Report};
 use crate::sim::Simulator;
 use crate::slam::particles::Beside;
 use crate::slam::{LoopCloser, SlamPlace};
@@ -42,7 +43,14 @@ pub fn check(mission: &Mission, world: &World) -> Result<(), WorldError> {
         file: world.name().into(),
         index: mission.start,
         reason,
-    })
+    })?;
+    known(mission, &simulator).map(|_| ())
+}
+
+/// Returns what the device knows before its first step; `None` if that is nothing.
+fn known(mission: &Mission, simulator: &Simulator<'_>) -> Result<Option<Loaded>, WorldError> {
+    let loaded = |map: &KnownMap| map.load_for(&simulator.start().pose(), &mission.hull);
+    mission.known.as_ref().map(loaded).transpose()
 }
 
 /// Returns the settings of a run.
@@ -63,6 +71,7 @@ pub(in crate::trial) fn setup(mission: &Mission, simulator: &Simulator<'_>) -> S
         resumes: mission.resumes,
         orders: mission.orders.clone(),
         corrects: false,
+        known: None,
     }
 }
 
@@ -115,7 +124,11 @@ fn explored(
     (corrector, keeping): (Option<&mut dyn Corrector>, Option<&mut Keeping>),
 ) -> Result<(Report, Record), MissionError> {
     let mut simulator = Simulator::new(world, mission.sim_config())?;
-    link.hello()?;
+    let identity = link.hello()?;
+    let loaded = known(mission, &simulator)?;
+    if let Some((map, loaded)) = mission.known.as_ref().zip(loaded.as_ref()) {
+        map.check_room(loaded, identity.tile_pool)?;
+    }
     let usual = setup(mission, &simulator);
     let mut closer = match mission.slam {
         SlamPlace::Host => LoopCloser::new(&usual.start, mission.motion()),
@@ -127,6 +140,7 @@ fn explored(
     };
     let setup = Setup {
         corrects: corrector.is_some(),
+        known: loaded.as_ref().map(|it| it.correction.clone()),
         ..usual
     };
     let mut account = Account::new(&setup, &simulator);
@@ -146,11 +160,22 @@ fn explored(
     };
     record.ground = account.ground.take();
     let mut report = summary::report(mission, &simulator, &account, &record);
+    report.known = known_part(mission, loaded.as_ref());
     if let Some(closer) = closer {
         record.corrected = corrected_path(&closer, &record);
         report.slam = Some(closer.report());
     }
     Ok((report, record))
+}
+
+/// Returns what the device knew before its first step, for the report.
+fn known_part(mission: &Mission, loaded: Option<&Loaded>) -> Option<Known> {
+    let (map, loaded) = mission.known.as_ref().zip(loaded)?;
+    Some(Known {
+        file: map.file.clone(),
+        tiles: loaded.correction.tiles.len(),
+        known_m2: loaded.known_m2,
+    })
 }
 
 /// As [`run`], and keeps the run.

@@ -16,9 +16,12 @@ pub enum TeamError {
     Robots(usize),
     /// Not all robots find a place to start.
     #[error(
-        "only {fitting} of {robots} robots find room {}; take fewer robots, or another --start{}",
+        "only {fitting} of {robots} robots find room {}{}; take fewer robots, or another \
+         --start{}{}",
         if *apart { "apart" } else { "side by side" },
-        if *apart { "" } else { ", or say --apart" }
+        if *is_fenced { " where --bounds and --no-go let them stand" } else { "" },
+        if *apart { "" } else { ", or say --apart" },
+        if *is_fenced { ", or wider bounds" } else { "" }
     )]
     Room {
         /// Robots that do.
@@ -27,6 +30,8 @@ pub enum TeamError {
         robots: usize,
         /// True if they were to start far apart.
         apart: bool,
+        /// True if the robots may not be everywhere.
+        is_fenced: bool,
     },
     /// The timetable is impossible.
     #[error(transparent)]

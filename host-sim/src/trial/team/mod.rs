@@ -31,7 +31,7 @@ use crate::radio::{MOST_ROBOTS, Radio, Station};
 use crate::report::{GridMap, TeamReport};
 use crate::sim::{Fleet, SimConfig, Simulator};
 use crate::slam::SlamPlace;
-use crate::world::{Start, World};
+use crate::world::{Start, World, WorldError};
 pub use error::TeamError;
 use member::{Common, Member, Presence};
 pub use misplaced::StartError;
@@ -87,7 +87,22 @@ pub fn starts(team: &TeamMission, world: &World) -> Result<Vec<Start>, TeamError
             fitting: starts.len(),
             robots,
             apart: team.apart,
+            is_fenced: !team.mission.fence.is_empty(),
         });
+    }
+    for (robot, start) in starts.iter().enumerate() {
+        let stands = team
+            .mission
+            .fence
+            .check_start(&team.mission.hull, &start.pose());
+        stands.map_err(|reason| TeamError::Robot {
+            robot,
+            error: MissionError::World(WorldError::Start {
+                file: world.name().into(),
+                index: team.mission.start,
+                reason,
+            }),
+        })?;
     }
     Ok(starts)
 }

@@ -4,7 +4,8 @@
 //! nearest to it where it fits, has [`WALL_M`] to every wall, and can turn on the spot beside the
 //! others. All face the same way. *Apart*: the next robot takes the start of the world that is
 //! farthest from all robots so far; if the world has too few starts, the farthest place of a
-//! lattice where it can turn on the spot. Only places that the first robot can reach count. Metres.
+//! lattice where it can turn on the spot. Only places that the first robot can reach count, and only those where
+//! bounds and no-go polygons let a robot stand. Metres.
 
 use crate::metrics::CellSet;
 use crate::robot::Pose;
@@ -130,6 +131,11 @@ impl<'w> Places<'w> {
         self.off_m(&start) >= 2.0 * footprint.circumradius_m() + BETWEEN_M
             && self.reaches(&start)
             && self.world.clearance_m(footprint, start) >= WALL_M
+            && self
+                .config
+                .fence
+                .check_start(footprint, &start.pose())
+                .is_ok()
             && Simulator::new(self.world, config).is_ok()
     }
 }

@@ -105,6 +105,7 @@ impl Whole<'_, '_, '_> {
                 circled: most(robots, |report| report.loops.circled),
                 ..first.loops
             },
+            fence: fence(robots),
             loop_closing: None,
             patrol: None,
             safety: self.safety(robots),
@@ -265,6 +266,12 @@ impl Whole<'_, '_, '_> {
 fn most(robots: &[team::Robot], of: fn(&Report) -> u32) -> u32 {
     let counts = robots.iter().map(|robot| of(&robot.report));
     counts.max().unwrap_or(0)
+}
+
+/// Returns the fence, with the depth of the hull that was deepest in what is forbidden.
+fn fence(robots: &[team::Robot]) -> Option<report::Fence> {
+    let fences = robots.iter().filter_map(|robot| robot.report.fence.clone());
+    fences.max_by(|a, b| a.deepest_m.total_cmp(&b.deepest_m))
 }
 
 fn all_true(robots: &[team::Robot], of: fn(&Report) -> Option<bool>) -> Option<bool> {
