@@ -1,5 +1,5 @@
-//! Mission files: what a robot knows, what it may not enter, where it drives after its exploration, and what it
-//! may spend. Strict TOML; docs/MISSIONS.md explains every key.
+//! Mission files: what a robot knows, what it may not enter, where it drives after its exploration,
+//! and what it may spend. Strict TOML; docs/MISSIONS.md explains every key.
 //!
 //! ```toml
 //! bounds_m = [[[6, 3], [18, 3], [18, 11], [6, 11]]]
