@@ -88,6 +88,7 @@ impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
 
     /// Charges the window with the strategy's own boundary values. Returns `None` if it has none,
     /// or if the robot reaches none of them.
+    #[inline(never)]
     pub(super) fn charge_rails(&mut self) -> Option<()> {
         if self.state.errands.is_going() {
             return None;

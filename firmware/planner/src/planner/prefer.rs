@@ -15,6 +15,7 @@ use crate::planner::workspace::Workspace;
 impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
     /// Adds the preference of \[Maffei20, eqs. 3 to 5\] to the strategy's own in every cell of the
     /// window. Flat ground has none.
+    #[inline(never)]
     pub(super) fn prefer(&mut self) {
         let Some(ground) = &self.config.ground else {
             return;
@@ -40,6 +41,7 @@ impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
     }
 
     /// Notes how flat the solved field is around the robot: the next preferences depend on it.
+    #[inline(never)]
     pub(super) fn note_flatness(&mut self) {
         let Workspace {
             window, local_grid, ..

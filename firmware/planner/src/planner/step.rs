@@ -127,6 +127,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> Step<'a, TILES, SLOTS> {
 
     /// Plans on a new skeleton, or continues to thin the next one. Planning on a skeleton begins in
     /// the step after it is complete, so no step does both. Returns true if this step planned.
+    #[inline(never)]
     fn advance_plan(&mut self, timer: &mut impl StageTimer) -> bool {
         let planned = if self.state.ends {
             self.end_now();
