@@ -72,7 +72,7 @@ pub(super) fn replan<const TILES: usize, const SLOTS: usize>(
     }
     match outcome {
         RoundOutcome::Nothing | RoundOutcome::Stuck if state.errands.is_going() => {
-            state.end_errand(false);
+            state.give_up_errand();
         }
         RoundOutcome::Nothing if may_search_viewpoints(state) => state.viewpoints.begin(),
         RoundOutcome::Nothing => end(config, state, workspace, footprint, input),
