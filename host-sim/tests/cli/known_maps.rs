@@ -117,7 +117,7 @@ fn a_robot_that_knows_a_half_explores_the_other_one_in_less_time() {
         "origin: [{}, {}, {}]",
         100.0 - numbers[1],
         numbers[0],
-        1.570_796_326_8
+        core::f64::consts::FRAC_PI_2
     );
     fs::write(
         folder.path().join("half/turned.yaml"),

@@ -34,9 +34,9 @@ const STANDING_MS: u32 = 14_000;
 const MOVED_M: f32 = 0.3;
 /// Passages blocked in a row without a move after which the robot is stuck.
 const STUCK_PASSAGES: u8 = 3;
-/// Time without a move after which a robot that begins to look may fail only once more,
-/// milliseconds. A passage takes 12 s in a large map, and within a minute the robot is to say that
-/// it is stuck (measured: docs/MEASURED.md, "Failures of a robot that begins to look").
+/// Time without a move after which a robot that begins the next try, or to look, may fail only once
+/// more, milliseconds. A passage takes 12 s in a large map, and within a minute the robot is to say
+/// that it is stuck (measured: docs/MEASURED.md, "Failures of a robot that begins to look").
 const LONG_STANDING_MS: u32 = 30_000;
 /// Time with a closed path after which the passage is blocked, milliseconds: noise may close a way
 /// for a moment.
@@ -183,22 +183,20 @@ impl ProgressChecker {
         self.closed = false;
     }
 
-    /// Begins the next try, such as the second chance, from where the robot stands.
-    pub(crate) fn begin_next_try(&mut self) {
+    /// Begins with another aim: a patrol, or an order to drive.
+    pub(crate) fn begin_anew(&mut self) {
         (self.stood_passages, self.moved) = (0, false);
         self.attempts.clear();
     }
 
-    /// Begins to look from where the robot stands. No passage opens for that. So if it has stood
-    /// for long, one more passage that is blocked tells that it is stuck.
-    pub(crate) fn begin_looking(&mut self) {
-        let passages = if self.standing_ms(self.judged_ms) > LONG_STANDING_MS {
-            STUCK_PASSAGES - 1
-        } else {
-            0
-        };
-        self.begin_next_try();
-        self.stood_passages = passages;
+    /// Begins the next try from where the robot stands: the second chance, or to look. If it has
+    /// stood for long, one more passage that is blocked tells that it is stuck.
+    pub(crate) fn begin_next_try(&mut self) {
+        let has_stood = self.standing_ms(self.judged_ms) > LONG_STANDING_MS;
+        self.begin_anew();
+        if has_stood {
+            self.stood_passages = STUCK_PASSAGES - 1;
+        }
     }
 
     /// Returns true if the robot moved since the present try began.

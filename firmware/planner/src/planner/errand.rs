@@ -3,7 +3,7 @@
 //! ```text
 //! order ─► on the way ──────────────► approach ───────► turn ─────► arrived
 //!          path, window, progress     straight, brakes  on the spot
-//!              └── no path, no progress ──┴── no room ──┘──────────► unreachable
+//!              └── no path, no progress ──┴── no turn ──┘──────────► unreachable
 //! ```
 //!
 //! The way there is a path to a chosen goal, as to a frontier: the skeleton, the window's field,
@@ -11,8 +11,9 @@
 //! robot drives the last metre straight, where that is open, and brakes for the place itself. To a
 //! place behind it that it cannot turn to, it backs.
 //!
-//! It has arrived if it stands within 0.1 m, or within the promised 0.2 m and 10° where nothing
-//! leads nearer.
+//! It turns where it stands within 0.1 m, or within the promised 0.2 m where nothing leads nearer.
+//! It has arrived if it then has the heading. The turn has a clock of its own, which goes by the
+//! heading; the progress checker, which goes by the way, waits meanwhile.
 //!
 //! *Home* is the pose of the session's first scan, with its heading, or the one that is set: a
 //! device that was reset is told where its session began. It is a pose of the map: a correction
@@ -114,13 +115,38 @@ struct Going {
     yaw_rad: Option<f32>,
     /// The robot has been there, and only its heading is missing.
     is_there: bool,
+    /// Nothing leads nearer, so there is where the robot stands.
+    settles: bool,
     /// The heading of the straight way.
     straight_rad: Option<f32>,
-    /// When the robot last could turn.
+    /// When the robot last came nearer to its heading, and the least turn that was left to each
+    /// side, radians.
     turned_ms: u32,
+    left_rad: [f32; 2],
 }
 
 impl Going {
+    /// Makes an errand that begins.
+    const fn new(errand: Errand, to: Point, yaw_rad: Option<f32>) -> Self {
+        Self {
+            errand,
+            to,
+            yaw_rad,
+            is_there: false,
+            settles: false,
+            straight_rad: None,
+            turned_ms: 0,
+            left_rad: [2.0 * math::PI; 2],
+        }
+    }
+
+    /// Returns true if the turn to the heading was begun.
+    fn has_turned(&self) -> bool {
+        self.left_rad
+            .iter()
+            .any(|left_rad| *left_rad < 2.0 * math::PI)
+    }
+
     /// Returns true if a robot at `pose` is where the errand promises to take it.
     fn is_promised(&self, pose: &Pose) -> bool {
         let (near_m, near_rad) = PROMISED;
@@ -142,12 +168,8 @@ impl Errands {
             is_home_set: false,
             is_going: false,
             last: Going {
-                errand: Errand::Home,
-                to: Point::ORIGIN,
-                yaw_rad: None,
-                is_there: false,
-                straight_rad: None,
-                turned_ms: 0,
+                left_rad: [0.0; 2],
+                ..Going::new(Errand::Home, Point::ORIGIN, None)
             },
             driven_m: 0.0,
             driven_to: Point::ORIGIN,
@@ -299,14 +321,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         if !is_near(to) || !self.map.tiles().fence().allows(to.cell()) {
             return Err(TaskError::BadGoal);
         }
-        self.plan_anew(Some(Going {
-            errand,
-            to,
-            yaw_rad,
-            is_there: false,
-            straight_rad: None,
-            turned_ms: 0,
-        }));
+        self.plan_anew(Some(Going::new(errand, to, yaw_rad)));
         Ok(self.status)
     }
 
@@ -332,6 +347,22 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.strategy.begin_errand();
         self.viewpoints = viewpoint::Search::new();
         self.ends = false;
+    }
+
+    /// Nothing leads nearer to the errand's place. A robot that stands as near as promised turns
+    /// there; one that turns goes on. Else the errand ends.
+    pub(super) fn give_up_errand(&mut self) {
+        let MapPose(pose) = self.localiser.pose();
+        if let Some(going) = self.errands.going_mut() {
+            let is_near = pose.point().distance_m(going.to) <= PROMISED.0;
+            if !going.is_there && !going.settles && is_near {
+                (going.settles, going.is_there) = (true, true);
+            }
+            if going.is_there {
+                return;
+            }
+        }
+        self.end_errand(false);
     }
 
     /// Ends the errand: the robot is there, or cannot get nearer.
@@ -378,3 +409,6 @@ impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

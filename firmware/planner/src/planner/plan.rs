@@ -27,7 +27,7 @@ impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
         }
         match outcome {
             RoundOutcome::Nothing | RoundOutcome::Stuck if self.state.errands.is_going() => {
-                self.state.end_errand(false);
+                self.state.give_up_errand();
             }
             RoundOutcome::Nothing if self.may_search_viewpoints() => self.state.viewpoints.begin(),
             RoundOutcome::Nothing => self.end(),

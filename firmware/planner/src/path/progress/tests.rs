@@ -131,11 +131,11 @@ fn after_a_passage_the_way_back_has_all_its_time() {
 }
 
 #[test]
-fn a_robot_that_has_stood_for_long_may_fail_once_more_when_it_looks() {
+fn a_robot_that_has_stood_for_long_may_fail_once_more_at_its_next_try() {
     let fails = |stood_ms: u32, moves_m: f32| {
         let mut progress = ProgressChecker::new();
         progress.judge(FAR, 40, stood_ms);
-        progress.begin_looking();
+        progress.begin_next_try();
         let at = Point {
             x_m: moves_m,
             y_m: 0.0,

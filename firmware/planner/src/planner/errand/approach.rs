@@ -8,6 +8,7 @@ use crate::drive::{CollisionChecker, Place};
 use crate::geometry::{CELL_M, Cell, Point, Twist};
 use crate::math;
 use crate::planner::Output;
+use crate::planner::errand::PROMISED;
 use crate::planner::step::Step;
 use crate::roadmap::configuration_space::is_passable;
 
@@ -26,8 +27,9 @@ const TURN_RADPS: (f32, f32) = (0.6, 0.12);
 const TURN_GAIN_HZ: f32 = 1.5;
 /// Clearance of the turn, metres: that of a creeping robot.
 const TURN_MARGIN_M: f32 = 0.02;
-/// Time without a turn, because there is no room, after which the errand ends, milliseconds.
-const NO_ROOM_MS: u32 = 10_000;
+/// Time in which the heading comes no nearer, because there is no room or the robot does not turn,
+/// after which the errand ends, milliseconds.
+const NO_TURN_MS: u32 = 10_000;
 
 impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
     /// Drives the last metre of an errand: straight to the goal, and then to the heading asked for.
@@ -38,11 +40,17 @@ impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
         let going = self.state.errands.going_mut()?;
         let left_m = robot.distance_m(going.to);
         if !going.is_there {
-            going.turned_ms = self.input.time_ms;
+            // The clock of a turn that was begun stands while the robot is away.
+            going.turned_ms = match going.has_turned() {
+                true => going.turned_ms.wrapping_add(config.period_ms()),
+                false => self.input.time_ms,
+            };
         }
-        going.is_there = left_m <= THERE_M || (going.is_there && left_m <= STAYS_M);
+        let stays_m = if going.settles { PROMISED.0 } else { STAYS_M };
+        going.is_there = left_m <= THERE_M || (going.is_there && left_m <= stays_m);
         going.straight_rad = None;
         if going.is_there {
+            self.state.strategy.frontier.pause(self.input.time_ms);
             return Some(self.turn());
         }
         let (tiles, footprint) = (self.state.map.tiles(), &self.footprint);
@@ -133,15 +141,20 @@ impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
             };
             let is_free = checker.is_arc_clear(Place::default(), 0.0, turn_rad, TURN_MARGIN_M)
                 && checker.admits(twist, now, self.config, TURN_MARGIN_M);
-            is_free.then_some(twist)
+            is_free.then_some((twist, turn_rad))
         });
-        match (found, self.state.errands.going_mut()) {
-            (Some(_), Some(going)) => going.turned_ms = time_ms,
-            _ if since(time_ms, going.turned_ms) > NO_ROOM_MS => self.state.end_errand(false),
-            _ => {}
+        let mut is_late = since(time_ms, going.turned_ms) > NO_TURN_MS;
+        if let (Some((_, turn_rad)), Some(going)) = (found, self.state.errands.going_mut())
+            && let Some(left_rad) = going.left_rad.get_mut(usize::from(turn_rad < 0.0))
+            && turn_rad.abs() < *left_rad - TURNED_RAD
+        {
+            (*left_rad, going.turned_ms, is_late) = (turn_rad.abs(), time_ms, false);
+        }
+        if is_late {
+            self.state.end_errand(false);
         }
         Output {
-            velocity: found.unwrap_or_default(),
+            velocity: found.map(|(twist, _)| twist).unwrap_or_default(),
             ..Output::going()
         }
     }

@@ -38,7 +38,7 @@ impl Frontier {
     pub(super) fn only_look(&mut self) -> RoundOutcome {
         self.only_looks = true;
         self.immobile = !self.progress.moved();
-        self.progress.begin_looking();
+        self.progress.begin_next_try();
         self.events.add(Event::OnlyLooks);
         self.path.clear();
         RoundOutcome::Nothing

@@ -190,7 +190,7 @@ impl Frontier {
     pub(super) fn go_on(&mut self) {
         (self.second_chance, self.retries) = (false, 0);
         (self.only_looks, self.waits) = (false, false);
-        self.progress.begin_next_try();
+        self.progress.begin_anew();
         self.path.clear();
     }
 
