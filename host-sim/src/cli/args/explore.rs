@@ -231,6 +231,10 @@ pub(in crate::cli) struct ExploreArgs {
     /// `host-sim replay` runs again
     #[arg(long, value_name = "FILE.mcap")]
     pub(in crate::cli) record: Option<PathBuf>,
+    /// Write the cycles of the emulated chip by stage and function, by the model, as folded stacks
+    /// for flame graphs; for --link qemu
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) profile: Option<PathBuf>,
     #[command(flatten)]
     pub(in crate::cli) robot: RobotArgs,
     /// Print during the run what the robot does and why, as in the file mission.log
