@@ -171,8 +171,8 @@ pub fn open_line(image: &Path) -> Result<QemuLine, LinkError> {
 }
 
 /// Starts `image` in the emulator, with the plugin that counts cycles
-/// ([`plugin`](super::cycles::plugin)) if one is given. It keeps a profile in the file `profile`, if
-/// one is given.
+/// ([`plugin`](super::cycles::plugin)) if one is given. It keeps a profile in the file `profile`,
+/// if one is given.
 ///
 /// # Errors
 /// [`LinkError::Io`] naming what is missing and what to type.
