@@ -25,7 +25,7 @@ use crate::cli::robot::RobotArgs;
 use crate::cli::strategies;
 use crate::cli::values::{
     area, budget, failing, ground_parameters, home_at, impatience, imu_noise, laser_noise, live,
-    patrol_for, pause, people, place, slam_place, snapshots, start, sweeps, wait, working,
+    patrol_for, pause, people, period, place, slam_place, snapshots, start, sweeps, wait, working,
 };
 
 #[derive(Clone, Debug, Args)]
@@ -96,6 +96,15 @@ pub(in crate::cli) struct ExploreArgs {
     pub(in crate::cli) failing_limits: Option<Limits>,
     #[command(flatten)]
     pub(in crate::cli) pace: PaceArgs,
+    /// Milliseconds from one step of the device to the next, 100 to 400
+    #[arg(
+        long,
+        value_name = "MS",
+        default_value = "200",
+        value_parser = period,
+        allow_negative_numbers = true
+    )]
+    pub(in crate::cli) period: u16,
     /// Simulated seconds of patrol after everything is explored; for tdbvp
     #[arg(
         long,
