@@ -33,8 +33,17 @@ pub fn chip(image: &Path) -> Endpoint<QemuLine> {
 /// If QEMU cannot be started, or the plugin cannot be built or loaded.
 #[must_use]
 pub fn watched_chip(image: &Path) -> Endpoint<QemuLine> {
+    profiled_chip(image, None)
+}
+
+/// As [`watched_chip`], with a file for a profile.
+///
+/// # Panics
+/// As [`watched_chip`].
+#[must_use]
+pub fn profiled_chip(image: &Path, profile: Option<&Path>) -> Endpoint<QemuLine> {
     let plugin = expect(cycles::plugin());
-    let line = qemu::open_watched(image, plugin);
+    let line = qemu::open_watched(image, plugin, profile);
     Endpoint::new(expect(line), RetryPolicy::LOCKSTEP, 1)
 }
 

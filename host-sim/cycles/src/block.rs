@@ -96,6 +96,18 @@ impl Block {
         step.map_or(self.end, |&(end, _)| self.start.wrapping_add(end.into()))
     }
 
+    /// Returns the address of instruction `index`; that of the first if there are not so many.
+    pub(crate) fn address(&self, index: usize) -> u32 {
+        self.prices().nth(index).map_or(self.start, |(at, _)| at)
+    }
+
+    /// Returns the address of each instruction, and its cycles.
+    pub(crate) fn prices(&self) -> impl Iterator<Item = (u32, u16)> {
+        let starts = core::iter::once(0).chain(self.steps.iter().map(|&(end, _)| end));
+        let starts = starts.map(|offset| self.start.wrapping_add(offset.into()));
+        starts.zip(self.steps.iter().map(|&(_, cycles)| cycles))
+    }
+
     /// Returns what the block's instructions from `address` on take; `None` if no instruction of
     /// the block, but the first, begins there, and if the block does not end there.
     #[must_use]

@@ -14,6 +14,7 @@ use std::collections::HashMap;
 use crate::block::{Block, Counts, End};
 use crate::flash::{Flash, line_of};
 use crate::instruction::Instruction;
+use crate::ledger::{Charge, Ledger};
 use crate::price::{EXCEPTION, REFILL_DIRECT, REFILL_INDIRECT, REFILL_SPLIT, misaligned};
 
 /// Addresses from here on are devices.
@@ -48,6 +49,8 @@ pub struct Chip {
     last: Option<usize>,
     /// The address behind the last access to a device, if no block has begun since.
     behind_device: Option<u32>,
+    /// What each instruction took, if somebody wants to know.
+    ledger: Option<Ledger>,
 }
 
 impl Chip {
@@ -60,26 +63,21 @@ impl Chip {
         })
     }
 
+    /// Keeps a ledger of what each instruction takes.
+    pub fn keep_ledger(&mut self) {
+        self.ledger.get_or_insert_default();
+    }
+
     /// Executes a block. An unknown number does nothing.
     pub fn execute(&mut self, number: usize) {
         let left = self.behind_device.take();
+        let straight = self.follow(number, left);
         let Some(block) = self.blocks.get(number) else {
             return;
         };
-        let mut now = self.counts.cycles;
-        let mut straight = false;
-        if let Some(last) = self.last.and_then(|last| self.blocks.get(last)) {
-            let rest = left.filter(|&address| address == block.start);
-            if let Some(rest) = rest.and_then(|address| last.rest(address)) {
-                now -= rest.cycles;
-                self.counts.instructions -= rest.instructions;
-                straight = true;
-            } else if last.end == block.start {
-                straight = true;
-            } else {
-                now += u64::from(refill(last, block));
-            }
-        }
+        let begun = self.counts.cycles;
+        let mut now = begun;
+        let mut straight = straight;
         if let Some(first) = block.first_fp {
             now += self.divided.saturating_sub(now + u64::from(first));
         }
@@ -93,22 +91,74 @@ impl Chip {
         if block.divides_on > 0 {
             self.divided = now + u64::from(block.divides_on);
         }
+        if let Some(ledger) = &mut self.ledger {
+            ledger.execute(number, now - begun - block.counts.cycles);
+        }
         self.counts.cycles = now;
         self.counts.instructions += block.counts.instructions;
         self.last = Some(number);
     }
 
+    /// Goes on from the last block to another one, by a refill after a taken branch. `left` is
+    /// where the last block was given up. Returns true if the core runs straight.
+    fn follow(&mut self, number: usize, left: Option<u32>) -> bool {
+        let last = self
+            .last
+            .and_then(|last| Some((last, self.blocks.get(last)?)));
+        let Some(((from, last), block)) = last.zip(self.blocks.get(number)) else {
+            return false;
+        };
+        let rest = left.filter(|&address| address == block.start);
+        if let Some((address, rest)) = rest.and_then(|it| Some((it, last.rest(it)?))) {
+            self.counts.cycles -= rest.cycles;
+            self.counts.instructions -= rest.instructions;
+            if let Some(ledger) = &mut self.ledger {
+                ledger.take_back(last, address);
+            }
+            return true;
+        }
+        if last.end == block.start {
+            return true;
+        }
+        let cycles = refill(last, block);
+        self.counts.cycles += u64::from(cycles);
+        if let Some(ledger) = &mut self.ledger {
+            ledger.refill(from, cycles);
+        }
+        false
+    }
+
     /// Accesses memory, in the block that is being executed.
     pub fn access(&mut self, access: &Access) {
-        self.counts.cycles += u64::from(misaligned(access.address, access.size));
+        let mut wait = u64::from(misaligned(access.address, access.size));
+        self.counts.cycles += wait;
         if access.address >= DEVICES {
             let block = self.blocks.get(access.block);
             self.behind_device = block.map(|block| block.behind(access.index));
         } else if !access.store
             && let Some(line) = line_of(access.address)
         {
-            self.counts.cycles += self.flash.load(line, self.counts.cycles);
+            let loaded = self.flash.load(line, self.counts.cycles);
+            self.counts.cycles += loaded;
+            wait += loaded;
         }
+        if wait > 0
+            && let Some(ledger) = &mut self.ledger
+            && let Some(block) = self.blocks.get(access.block)
+        {
+            ledger.charge(block.address(access.index), wait);
+        }
+    }
+
+    /// Returns what each instruction took since the last call, with the rest of a block as in
+    /// [`Chip::counts`]. Nothing without a ledger.
+    pub fn charges(&mut self) -> Vec<Charge> {
+        let last = self.last.and_then(|last| self.blocks.get(last));
+        // Only an address at which the block was given up has a rest.
+        let left = last.zip(self.behind_device);
+        let left = left.filter(|(block, address)| block.rest(*address).is_some());
+        let ledger = self.ledger.as_mut();
+        ledger.map_or_else(Vec::new, |ledger| ledger.take(&self.blocks, left))
     }
 
     /// Returns what was executed up to now. Right behind an access to a device the rest of the

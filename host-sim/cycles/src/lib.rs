@@ -6,8 +6,10 @@ pub mod chip;
 pub mod decode;
 pub mod flash;
 pub mod instruction;
+pub mod ledger;
 mod lines;
 pub mod price;
+pub mod profile;
 pub mod steps;
 pub mod watcher;
 

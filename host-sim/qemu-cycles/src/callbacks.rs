@@ -4,8 +4,9 @@
 //! an access has the instruction in its lowest bits and the block above them.
 
 use core::cell::RefCell;
-use std::fs::File;
-use std::io::Write as _;
+use core::mem;
+use std::fs::{File, OpenOptions};
+use std::io::{self, Seek as _, SeekFrom, Write as _};
 use std::sync::{Mutex, PoisonError};
 
 use fieldline_cycles::chip::Access;
@@ -19,49 +20,89 @@ use crate::api::Translation;
 /// Bits for the number of an instruction. QEMU translates at most 512 at once.
 const INDEX_BITS: u32 = 10;
 
-/// The file for the steps, until the core's thread takes it.
-static STEPS: Mutex<Option<File>> = Mutex::new(None);
+/// The files, until the core's thread takes them.
+static FILES: Mutex<Files> = Mutex::new(Files {
+    steps: None,
+    profile: None,
+});
 
 thread_local! {
     static PLUGIN: RefCell<Option<Plugin>> = const { RefCell::new(None) };
 }
 
+/// Where the plugin writes.
+#[derive(Default)]
+struct Files {
+    /// What each step took.
+    steps: Option<File>,
+    /// The profile of all steps.
+    profile: Option<File>,
+}
+
 /// What the thread of the core owns.
 struct Plugin {
     watcher: Watcher,
-    steps: Option<File>,
+    files: Files,
 }
 
 impl Plugin {
     fn take() -> Self {
-        Self {
-            watcher: Watcher::default(),
-            steps: STEPS.lock().unwrap_or_else(PoisonError::into_inner).take(),
+        let mut files = FILES.lock().unwrap_or_else(PoisonError::into_inner);
+        let files = mem::take(&mut *files);
+        let mut watcher = Watcher::default();
+        if files.profile.is_some() {
+            watcher.keep_profile();
         }
+        Self { watcher, files }
     }
 
+    /// Writes the profile first: who has read the step finds it in the profile.
     fn write(&mut self, cost: &StepCost) {
-        let Some(file) = &mut self.steps else { return };
-        if let Err(error) = file.write_all(&cost.to_bytes()) {
-            eprintln!("qemu-cycles: writing a step failed: {error}; no more steps are written");
-            self.steps = None;
-        }
+        let changes = self.watcher.changes();
+        write(&mut self.files.profile, "the profile", |file| {
+            for (at, bytes) in &changes {
+                file.seek(SeekFrom::Start(*at))?;
+                file.write_all(bytes)?;
+            }
+            Ok(())
+        });
+        write(&mut self.files.steps, "a step", |file| {
+            file.write_all(&cost.to_bytes())
+        });
     }
 }
 
-/// Reads the plugin's arguments: `steps=FILE`.
+/// Writes into a file, if there is one. After a failure there is none.
+fn write(file: &mut Option<File>, what: &str, action: impl FnOnce(&mut File) -> io::Result<()>) {
+    let Some(to) = file else { return };
+    if let Err(error) = action(to) {
+        eprintln!("qemu-cycles: writing {what} failed: {error}; no more is written");
+        *file = None;
+    }
+}
+
+/// Reads the plugin's arguments: `steps=FILE` and `profile=FILE`.
 pub(crate) fn set_up(arguments: &[String]) -> Result<(), String> {
-    let mut steps = None;
+    let mut files = Files::default();
     for argument in arguments {
+        let open = |options: &mut OpenOptions, path: &str| {
+            let file = options.create(true).open(path);
+            let file = file.map_err(|error| format!("cannot create {path}: {error}"))?;
+            Ok::<_, String>(Some(file))
+        };
         match argument.split_once('=') {
-            Some(("steps", path)) => {
-                let file = File::options().create(true).append(true).open(path);
-                steps = Some(file.map_err(|error| format!("cannot create {path}: {error}"))?);
+            Some(("steps", path)) => files.steps = open(File::options().append(true), path)?,
+            Some(("profile", path)) => {
+                files.profile = open(File::options().write(true).truncate(true), path)?;
             }
-            _ => return Err(format!("unknown argument '{argument}'; use steps=FILE")),
+            _ => {
+                return Err(format!(
+                    "unknown argument '{argument}'; use steps=FILE or profile=FILE"
+                ));
+            }
         }
     }
-    *STEPS.lock().unwrap_or_else(PoisonError::into_inner) = steps;
+    *FILES.lock().unwrap_or_else(PoisonError::into_inner) = files;
     Ok(())
 }
 

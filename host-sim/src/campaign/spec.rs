@@ -29,7 +29,7 @@ use super::{CampaignError, columns, numbers};
 use crate::near;
 
 /// Options of `explore` that a campaign has keys for, or that make no sense in one.
-const NOT_OPTIONS: [(&str, &str); 13] = [
+const NOT_OPTIONS: [(&str, &str); 14] = [
     ("strategy", "list `strategies`"),
     ("seed", "list `seeds`"),
     ("start", "list `starts`"),
@@ -39,6 +39,7 @@ const NOT_OPTIONS: [(&str, &str); 13] = [
     ("json", "leave it out; trials.jsonl has the reports"),
     ("realtime", "leave it out; trials run as fast as they can"),
     ("live", "leave it out; explore shows a run of its own"),
+    ("profile", "leave it out; explore profiles a run of its own"),
     ("team", "leave it out; a trial has one robot"),
     (
         "film",

@@ -17,7 +17,8 @@ use host_sim::world::World;
 
 use super::args::{ExploreArgs, GroundArg, LogArg};
 use super::pictures::Album;
-use super::prepared::Prepared;
+use super::prepared::{Beside, Prepared};
+use super::profile::Profiler;
 use super::progress::{Interrupt, Onlooker};
 use super::recording::Recorder;
 use super::resume;
@@ -194,14 +195,18 @@ fn explore(
     }
     let recorder = recorder(args, run)?.map(Rc::new);
     onlooker.record(recorder.clone());
+    let profiler = profiler(prepared, run)?;
     let mut keeping = resume::keeping(args, run);
-    let result = prepared.play_kept(
-        &run.mission,
-        &run.world,
-        &mut onlooker,
-        (keeping.as_mut(), recorder.as_deref()),
-    );
+    let beside = Beside {
+        keeping: keeping.as_mut(),
+        recorder: recorder.as_deref(),
+        profile: profiler.as_ref().map(Profiler::raw),
+    };
+    let result = prepared.play_kept(&run.mission, &run.world, &mut onlooker, beside);
     onlooker.finish();
+    if let Some(profiler) = profiler {
+        profiler.end(name);
+    }
     if let Some(recorder) = recorder {
         recorder.end(result.as_ref().ok().map(|(report, _)| report));
     }
@@ -234,20 +239,37 @@ fn recorder(args: &ExploreArgs, run: &Run) -> Result<Option<Recorder>> {
     let Some(file) = &args.record else {
         return Ok(None);
     };
+    let why = "a run that goes on has no recorded beginning";
+    alone("--record", file, args, run, why)?;
+    Recorder::open(file, &run.made_by, args.folder.force).map(Some)
+}
+
+/// Begins the profile of a run; `None` without `--profile`.
+fn profiler(prepared: &Prepared, run: &Run) -> Result<Option<Profiler>> {
+    let args = &prepared.args;
+    let Some(file) = &args.profile else {
+        return Ok(None);
+    };
+    alone(
+        "--profile",
+        file,
+        args,
+        run,
+        "a run that goes on has no profile of its beginning",
+    )?;
+    Profiler::open(file, &prepared.link, args.folder.force).map(Some)
+}
+
+/// Refuses a file for several runs, or for one that goes on, which has not all of it: `why`.
+fn alone(option: &str, file: &Path, args: &ExploreArgs, run: &Run, why: &str) -> Result<()> {
+    let file = file.display();
     if args.worlds.len() > 1 {
-        bail!(
-            "--record {}: a file holds one run; name one world",
-            file.display()
-        );
+        bail!("{option} {file}: a file holds one run; name one world");
     }
     if run.resumed.is_some() {
-        bail!(
-            "--record {}: a run that goes on has no recorded beginning; leave --record or --resume \
-             out",
-            file.display()
-        );
+        bail!("{option} {file}: {why}; leave {option} or --resume out");
     }
-    Recorder::open(file, &run.made_by, args.folder.force).map(Some)
+    Ok(())
 }
 
 /// Prints the report on standard output, and advice on standard error.

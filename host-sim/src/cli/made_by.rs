@@ -10,8 +10,8 @@ use host_sim::report::MadeBy;
 use super::args::Cli;
 
 /// Options that make no other run: where its results go, and how they are shown.
-const SHOWN: [&str; 9] = [
-    "out", "json", "force", "realtime", "live", "record", "film", "wait", "help",
+const SHOWN: [&str; 10] = [
+    "out", "json", "force", "realtime", "live", "record", "profile", "film", "wait", "help",
 ];
 
 static GIVEN: OnceLock<MadeBy> = OnceLock::new();

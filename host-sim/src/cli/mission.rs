@@ -83,6 +83,13 @@ fn check_device(args: &ExploreArgs, is_uneven: bool) -> Result<()> {
             args.strategy
         );
     }
+    if args.period != 200 && on_device(&args.strategy).is_none() {
+        bail!(
+            "--period is the device's, and --strategy {} runs on the host; leave --period out, or \
+             take a strategy on the device",
+            args.strategy
+        );
+    }
     if args.particles.is_some() && is_uneven {
         bail!("--particles takes level scans; leave it out, or say --ground flat");
     }
@@ -143,6 +150,7 @@ pub(super) fn mission(args: &ExploreArgs, link: &LinkSpec) -> Result<Mission> {
         working,
         failing,
         time_limit_ms: args.pace.time_limit,
+        period_ms: args.period.into(),
         patrol_s: args.patrol_for,
         space: space(args),
         fence: fence(args)?,

@@ -18,6 +18,7 @@ mod mission;
 mod mission_file;
 mod pictures;
 mod prepared;
+mod profile;
 mod progress;
 #[cfg(not(feature = "record"))]
 #[path = "no_recording.rs"]

@@ -3,6 +3,7 @@
 //! `explore` and `campaign` both make their runs here, so the same arguments mean the same run.
 
 use core::time::Duration;
+use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context as _, Result, anyhow, bail};
@@ -27,10 +28,21 @@ use super::recording::Recorder;
 use super::strategies;
 use super::{cycles, note, note_build};
 
+/// What is kept of a run while it runs.
+#[derive(Default)]
+pub(super) struct Beside<'a> {
+    /// Its state, or the one from which it goes on.
+    pub(super) keeping: Option<&'a mut Keeping>,
+    /// Its recording.
+    pub(super) recorder: Option<&'a Recorder>,
+    /// Where the emulated chip's cycles are counted by instruction.
+    pub(super) profile: Option<&'a Path>,
+}
+
 /// Arguments that fit together, and what they mean.
 pub(super) struct Prepared {
     pub(super) args: ExploreArgs,
-    link: LinkSpec,
+    pub(super) link: LinkSpec,
     pub(super) mission: Mission,
     /// What the file of `--mission` says.
     pub(super) mission_text: Option<String>,
@@ -69,17 +81,16 @@ impl Prepared {
 
     /// Makes the run of these arguments in `world`.
     pub(super) fn play(&self, world: &World, watch: &mut dyn Watch) -> Result<(Report, Record)> {
-        self.play_kept(&self.mission, world, watch, (None, None))
+        self.play_kept(&self.mission, world, watch, Beside::default())
     }
 
-    /// As [`Prepared::play`], with another mission, and keeps the run or goes on with it, and
-    /// records it.
+    /// As [`Prepared::play`], with another mission, and with what is kept of the run beside it.
     pub(super) fn play_kept(
         &self,
         mission: &Mission,
         world: &World,
         watch: &mut dyn Watch,
-        (keeping, recorder): (Option<&mut Keeping>, Option<&Recorder>),
+        beside: Beside<'_>,
     ) -> Result<(Report, Record)> {
         let (args, link) = (&self.args, &self.link);
         note_build(link);
@@ -92,6 +103,7 @@ impl Prepared {
             real_time: args.pace.realtime,
             tuning: args.robot.tuning(link)?,
             cycles: cycles(link),
+            profile: beside.profile.map(Path::to_owned),
         };
         let mut planner = strategies::open(&args.strategy, link, &options, mission.relaxation)
             .with_context(|| format!("--link {link}"))?;
@@ -100,12 +112,12 @@ impl Prepared {
             answer.map_err(|error| anyhow!("--link {link}: {error}"))?;
         }
         // Next to the device: what a team says to it is recorded too.
-        if let Some(recorder) = recorder {
+        if let Some(recorder) = beside.recorder {
             planner = recorder.tap(planner);
         }
         let (mut planner, network) = join(args, planner)?;
         let planner = planner.as_mut();
-        let result = match keeping {
+        let result = match beside.keeping {
             Some(keeping) => mission::explore_kept(mission, world, planner, watch, keeping),
             None => mission::explore(mission, world, planner, watch),
         };

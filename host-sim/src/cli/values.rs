@@ -154,6 +154,12 @@ pub(super) fn sweeps(text: &str) -> Result<u16, String> {
     number.ok_or_else(|| format!("give a whole number from 1 to {MOST_SWEEPS}"))
 }
 
+/// Parses a period, milliseconds: what the device takes.
+pub(super) fn period(text: &str) -> Result<u16, String> {
+    let number = text.parse().ok().filter(|it| (100..=400).contains(it));
+    number.ok_or_else(|| "give whole milliseconds from 100 to 400".into())
+}
+
 /// Parses a number of pictures.
 pub(super) fn snapshots(text: &str) -> Result<usize, String> {
     whole(text, MOST_SNAPSHOTS).map(|number| number as usize)

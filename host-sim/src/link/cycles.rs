@@ -110,7 +110,7 @@ fn tried(plugin: PathBuf) -> Result<PathBuf, LinkError> {
         return Err(LinkError::Io(what));
     }
     let steps = temporary("trial");
-    let arguments = arguments(&plugin, &steps);
+    let arguments = arguments(&plugin, &steps, None);
     let halted = ["-S"]
         .into_iter()
         .chain(arguments.iter().map(String::as_str));
@@ -137,8 +137,11 @@ fn tried(plugin: PathBuf) -> Result<PathBuf, LinkError> {
 }
 
 /// Arguments of QEMU.
-fn arguments(plugin: &Path, steps: &Path) -> Vec<String> {
-    let option = format!("file={},steps={}", plugin.display(), steps.display());
+fn arguments(plugin: &Path, steps: &Path, profile: Option<&Path>) -> Vec<String> {
+    let mut option = format!("file={},steps={}", plugin.display(), steps.display());
+    if let Some(profile) = profile {
+        option += &format!(",profile={}", profile.display());
+    }
     vec!["-plugin".into(), option]
 }
 
@@ -153,8 +156,12 @@ pub(super) struct StepFile {
 }
 
 impl StepFile {
-    /// Makes an empty file for a plugin.
-    pub(super) fn new(plugin: &Path, path: PathBuf) -> Result<Self, LinkError> {
+    /// Makes an empty file for a plugin, which also keeps a profile if it has a file for it.
+    pub(super) fn new(
+        plugin: &Path,
+        path: PathBuf,
+        profile: Option<&Path>,
+    ) -> Result<Self, LinkError> {
         let io = |error: io::Error| {
             LinkError::Io(format!(
                 "cannot make {} for cycles: {error}",
@@ -165,7 +172,7 @@ impl StepFile {
         let file = File::open(&path).map_err(io)?;
         Ok(Self {
             file,
-            arguments: arguments(plugin, &path),
+            arguments: arguments(plugin, &path, profile),
             path,
             begun: RefCell::default(),
         })
@@ -239,8 +246,10 @@ mod tests {
     fn the_last_whole_step_is_read_once() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("steps");
-        let steps = StepFile::new(Path::new("plugin.so"), path.clone()).unwrap();
+        let steps = StepFile::new(Path::new("plugin.so"), path.clone(), None).unwrap();
         assert!(steps.arguments()[1].ends_with("steps"));
+        let profiled = super::arguments(Path::new("plugin.so"), &path, Some(Path::new("p")));
+        assert!(profiled[1].ends_with("steps,profile=p"));
         assert_eq!(steps.last(), None);
         let cost = |cycles| {
             let mut cost = StepCost::default();

@@ -38,6 +38,7 @@ pub mod line;
 #[cfg(feature = "logs")]
 pub mod logs;
 pub mod loopback;
+pub mod profile;
 pub mod qemu;
 pub(crate) mod said;
 pub mod serial;

@@ -167,23 +167,28 @@ impl Line for QemuLine {
 /// [`LinkError::Io`] naming what is missing and what to type.
 #[cfg(unix)]
 pub fn open_line(image: &Path) -> Result<QemuLine, LinkError> {
-    open_watched(image, None)
+    open_watched(image, None, None)
 }
 
 /// Starts `image` in the emulator, with the plugin that counts cycles
-/// ([`plugin`](super::cycles::plugin)) if one is given.
+/// ([`plugin`](super::cycles::plugin)) if one is given. It keeps a profile in the file `profile`,
+/// if one is given.
 ///
 /// # Errors
 /// [`LinkError::Io`] naming what is missing and what to type.
 #[cfg(unix)]
-pub fn open_watched(image: &Path, plugin: Option<&Path>) -> Result<QemuLine, LinkError> {
+pub fn open_watched(
+    image: &Path,
+    plugin: Option<&Path>,
+    profile: Option<&Path>,
+) -> Result<QemuLine, LinkError> {
     let path = temporary("sock");
     let io = |what: &str, error: &std::io::Error| {
         LinkError::Io(format!("{what} {} failed: {error}", path.display()))
     };
     let listener = UnixListener::bind(&path).map_err(|error| io("binding socket", &error))?;
     let steps = plugin
-        .map(|plugin| StepFile::new(plugin, temporary("steps")))
+        .map(|plugin| StepFile::new(plugin, temporary("steps"), profile))
         .transpose()?;
     let more = steps.as_ref().map_or_else(Vec::new, StepFile::arguments);
     let started = Emulator::start(image, &format!("unix:{}", path.display()), &more);

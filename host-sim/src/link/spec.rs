@@ -2,7 +2,7 @@
 
 use core::fmt;
 use core::str::FromStr;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use fieldline_planner::Tuning;
 use fieldline_protocol::BAUD;
@@ -90,7 +90,7 @@ impl fmt::Display for LinkSpec {
 }
 
 /// Options of an opened link.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
     /// Faults to inject into the line.
     pub faults: Faults,
@@ -102,6 +102,9 @@ pub struct Options {
     pub tuning: Option<&'static Tuning>,
     /// The plugin that counts the cycles of the emulated chip; none are counted without it.
     pub cycles: Option<&'static Path>,
+    /// Where it keeps cycles by instruction ([`RawProfile`](super::profile::RawProfile)), if
+    /// anywhere.
+    pub profile: Option<PathBuf>,
 }
 
 impl LinkSpec {
@@ -129,7 +132,8 @@ impl LinkSpec {
             Self::Loopback => Ok(end(LocalDevice::new(), RetryPolicy::VIRTUAL, 1, options)),
             #[cfg(unix)]
             Self::Qemu => {
-                let line = qemu::open_watched(&image()?, options.cycles)?;
+                let line =
+                    qemu::open_watched(&image()?, options.cycles, options.profile.as_deref())?;
                 let policy = policy(RetryPolicy::LOCKSTEP);
                 Ok(end(line, policy, fresh_nonce(), options))
             }

@@ -25,12 +25,11 @@ use crate::geometry::{CELL_M, Cell};
 use crate::grid::bits::ones64;
 use crate::grid::{Row, at};
 use crate::ground::elevation::{GroundState, Heights};
+use crate::ground::heights::WindowRows;
 use crate::ground::{low_confidence, steepness};
 
 /// Distances to the two ends of a bridge, cells: the ends are at most four cells apart.
 const BRIDGES: [(i32, i32); 6] = [(1, 1), (1, 2), (2, 1), (2, 2), (1, 3), (3, 1)];
-/// The greatest of these distances.
-const LONGEST: i32 = 3;
 
 /// Limits for ground that spans a gap. They depend on the attitude of the measurements beside it.
 struct GapLimits {
@@ -99,6 +98,12 @@ impl<'a> RiseLimits<'a> {
             tuning,
         }
     }
+
+    /// Returns true if a bridge between these heights is not too steep. Both must be measured.
+    #[inline(always)]
+    fn bridge_spans(&self, a: Option<i32>, b: Option<i32>) -> bool {
+        a.zip(b).is_some_and(|(a, b)| (a - b).abs() <= self.bridge)
+    }
 }
 
 /// The classes of a row, one bit a cell. A cell without a bit keeps its class in the map.
@@ -112,12 +117,18 @@ pub(crate) struct Classes {
     pub(crate) free: u64,
 }
 
-/// Classifies row `y` of the window; `known` is the row in the map.
-pub(crate) fn row(heights: &Heights<'_>, limits: &RiseLimits<'_>, y: i32, known: Row) -> Classes {
+/// Classifies row `y` of the window, whose rows are `rows`; `known` is the row in the map.
+pub(crate) fn row(
+    (heights, rows): (&Heights<'_>, &WindowRows),
+    limits: &RiseLimits<'_>,
+    y: i32,
+    known: Row,
+) -> Classes {
     let mut classes = Classes::default();
     let (origin, tuning) = (heights.origin(), limits.tuning);
-    let bridges = bridges(heights, y) & known.unknown();
-    for k in ones64(heights.rows(y).marked | bridges) {
+    let bridged = bridged((heights, rows), limits, y, known.unknown());
+    let marked = at(rows, (y - origin.y) as usize).marked;
+    for k in ones64(marked | bridged) {
         let cell = origin.offset(k as i32, y - origin.y);
         let bit = 1_u64 << k;
         let near = |dx: i32, dy: i32| height_steps(heights, cell.offset(dx, dy));
@@ -137,8 +148,7 @@ pub(crate) fn row(heights: &Heights<'_>, limits: &RiseLimits<'_>, y: i32, known:
                 classes.negative |= bit;
             }
         } else if known.unknown() & bit != 0
-            && (bridges & bit != 0 && is_bridged(heights, limits, cell)
-                || low_confidence::is_usable(heights, limits, cell))
+            && (bridged & bit != 0 || low_confidence::is_usable(heights, limits, cell))
         {
             classes.free |= bit;
         }
@@ -286,29 +296,46 @@ impl Direction {
     }
 }
 
-/// Returns the cells of row `y` that have measured cells on both sides, at most four cells apart:
-/// those that [`is_bridged`] can hold for.
-fn bridges(heights: &Heights<'_>, y: i32) -> u64 {
-    let rows: [u64; 2 * LONGEST as usize + 1] =
-        core::array::from_fn(|k| heights.rows(y + k as i32 - LONGEST).measured);
-    let measured = |dy: i32| at(&rows, (LONGEST + dy) as usize);
+/// Returns the unmeasured ones of `cells` in row `y` for which [`is_bridged`] holds. Words of
+/// measured cells tell where both ends of a bridge are measured, so only those are compared.
+fn bridged(
+    (heights, rows): (&Heights<'_>, &WindowRows),
+    limits: &RiseLimits<'_>,
+    y: i32,
+    cells: u64,
+) -> u64 {
+    let origin = heights.origin();
+    // There are none outside of the window.
+    let measured = |dy: i32| at(rows, (y + dy - origin.y) as usize).measured;
     let here = measured(0);
-    BRIDGES.into_iter().fold(0, |cells, (ahead, behind)| {
-        let across = here >> ahead & here << behind;
-        cells | across | measured(ahead) & measured(-behind)
-    })
+    let mut left = cells & !here;
+    for (ahead, behind) in BRIDGES {
+        let across = (here >> ahead & here << behind, (1, 0));
+        let along = (measured(ahead) & measured(-behind), (0, 1));
+        for (both, (dx, dy)) in [across, along] {
+            for k in ones64(left & both) {
+                let cell = Cell {
+                    x: origin.x + k as i32,
+                    y,
+                };
+                let height =
+                    |steps: i32| height_steps(heights, cell.offset(steps * dx, steps * dy));
+                if limits.bridge_spans(height(ahead), height(-behind)) {
+                    left &= !(1 << k);
+                }
+            }
+        }
+    }
+    cells & !here & !left
 }
 
 /// Returns true if measured cells on both sides along an axis, at most four cells apart, bridge a
 /// cell: their heights differ by less than a climbable slope.
 pub(super) fn is_bridged(heights: &Heights<'_>, limits: &RiseLimits<'_>, cell: Cell) -> bool {
     let near = |dx: i32, dy: i32| height_steps(heights, cell.offset(dx, dy));
-    let bridges = |a: Option<i32>, b: Option<i32>| {
-        a.zip(b)
-            .is_some_and(|(a, b)| (a - b).abs() <= limits.bridge)
-    };
     BRIDGES.into_iter().any(|(ahead, behind)| {
-        bridges(near(ahead, 0), near(-behind, 0)) || bridges(near(0, ahead), near(0, -behind))
+        limits.bridge_spans(near(ahead, 0), near(-behind, 0))
+            || limits.bridge_spans(near(0, ahead), near(0, -behind))
     })
 }
 

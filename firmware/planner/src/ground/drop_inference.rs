@@ -196,7 +196,8 @@ mod tests {
         window.mark_possible_drop(Cell { x: 7, y: 9 });
         window.confirm_drop(Cell { x: 7, y: 9 });
         let limits = RiseLimits::new(&UnevenGround::TABLE_I, &GroundTuning::DEFAULT);
-        classify::row(&window.read(), &limits, 9, known).negative
+        let heights = window.read();
+        classify::row((&heights, &heights.all_rows()), &limits, 9, known).negative
     }
 
     /// The window of a robot that comes back or reverses holds only the strip that it stands on.

@@ -69,12 +69,15 @@ const TOPS: u32 = u32::from_le_bytes([0x80; 4]);
 
 /// What a row of the window holds, one bit a cell.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct MarkRows {
+pub(crate) struct MarkRows {
     /// Cells with a mark of any kind.
     pub(super) marked: u64,
     /// Cells with a mean height.
     pub(super) measured: u64,
 }
+
+/// All rows of the window, from the least on.
+pub(crate) type WindowRows = [MarkRows; WINDOW_SIDE as usize];
 
 /// Returns the highest bit of each byte that is not 0.
 #[inline(always)]
@@ -115,6 +118,12 @@ const fn count(mark: u8) -> u8 {
     } else {
         mark & COUNT
     }
+}
+
+/// Returns true if [`count`] is not 0, in one comparison.
+#[inline(always)]
+const fn is_measured(mark: u8) -> bool {
+    (mark & (COUNT | DROP)).wrapping_sub(1) < COUNT
 }
 
 /// Returns the storage index of a cell of the window at `origin`; `None` outside the window.
@@ -187,11 +196,16 @@ impl<'a> Heights<'a> {
         }
     }
 
+    /// Returns all rows of the window.
+    pub(crate) fn all_rows(&self) -> WindowRows {
+        core::array::from_fn(|k| self.rows(self.origin.y + k as i32))
+    }
+
     /// Returns the mean height of a cell; `None` if it was never measured.
     #[inline(always)]
     pub(super) fn fixed(&self, cell: Cell) -> Option<I7F9> {
         let slot = slot(self.origin, cell)?;
-        if count(self.mark_at(slot)) == 0 {
+        if !is_measured(self.mark_at(slot)) {
             return None;
         }
         Some(I7F9::from_le_bytes(*self.heights.get(slot)?))

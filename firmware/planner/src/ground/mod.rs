@@ -33,7 +33,7 @@ pub(crate) mod classify;
 pub(crate) mod doorway_view;
 mod drop_inference;
 pub mod elevation;
-mod heights;
+pub(crate) mod heights;
 mod low_confidence;
 pub(crate) mod ray;
 mod steepness;

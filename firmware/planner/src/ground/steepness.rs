@@ -135,7 +135,9 @@ mod tests {
             }
         }
         let limits = RiseLimits::new(&UnevenGround::TABLE_I, &GroundTuning::DEFAULT);
-        core::array::from_fn(|k| row(&window.read(), &limits, k as i32 - 32, Row::default()))
+        let (heights, known) = (window.read(), Row::default());
+        let rows = heights.all_rows();
+        core::array::from_fn(|k| row((&heights, &rows), &limits, k as i32 - 32, known))
     }
 
     /// Returns the number of obstacles among the inner cells.
@@ -251,7 +253,9 @@ mod tests {
             ..UnevenGround::TABLE_I
         };
         let limits = RiseLimits::new(&ground, &GroundTuning::DEFAULT);
-        let of = |y: i32| row(&window.read(), &limits, y, Row::default());
+        let (heights, known) = (window.read(), Row::default());
+        let rows = heights.all_rows();
+        let of = |y: i32| row((&heights, &rows), &limits, y, known);
         assert_eq!(of(0).obstacle, 0);
         // The third cell from the left is the first with two measured cells on both sides.
         assert_eq!(of(1).obstacle, u64::MAX << 2);

@@ -12,6 +12,7 @@ use crate::grid::bits::ones64;
 use crate::ground::classify::{self, RiseLimits};
 use crate::ground::doorway_view::{DoorwayView, Part};
 use crate::ground::elevation::{WINDOW_CELLS, WINDOW_SIDE};
+use crate::ground::heights::WindowRows;
 use crate::ground::survey::Survey;
 use crate::ground::{Elevation, Heights};
 use crate::input::Input;
@@ -76,14 +77,23 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         if self.attitude.is_exact(tuning) {
             self.view_doorways(config, ground, input);
         }
-        let limits = RiseLimits::new(ground, tuning);
         self.odd_rows = !self.odd_rows;
+        self.classify_all(
+            &RiseLimits::new(ground, tuning),
+            config.tuning.map.near_rows,
+        );
+    }
+
+    /// Classifies the rows of the elevation window that are due. It is not inlined: its rows of
+    /// marks would lie on the stack under the match of a scan.
+    #[inline(never)]
+    fn classify_all(&mut self, limits: &RiseLimits<'_>, near_rows: i32) {
+        let rows = self.heights().all_rows();
         let middle = self.window.y + WINDOW_SIDE / 2;
-        let near_rows = config.tuning.map.near_rows;
         for y in self.window.y..self.window.y + WINDOW_SIDE {
             // All rows would take too long for a step, and a far row can wait for one step.
             if (y - middle).abs() <= near_rows || (y & 1 == 1) == self.odd_rows {
-                self.classify(&limits, y);
+                self.classify(&rows, limits, y);
             }
         }
     }
@@ -201,11 +211,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         any
     }
 
-    /// Classifies a row of the elevation window.
-    fn classify(&mut self, limits: &RiseLimits<'_>, y: i32) {
+    /// Classifies a row of the elevation window, whose rows are `rows`.
+    fn classify(&mut self, rows: &WindowRows, limits: &RiseLimits<'_>, y: i32) {
         let x = self.window.x;
         let known = self.tiles.row(x, y);
-        let classes = classify::row(&self.heights(), limits, y, known);
+        let classes = classify::row((&self.heights(), rows), limits, y, known);
         let changed = [
             (
                 Class::Obstacle,
@@ -278,7 +288,8 @@ mod tests {
             (!DITCH.contains(&cell.x)).then_some(if cell.x > 33 { far_side_m } else { 0.0 })
         });
         let limits = RiseLimits::new(&UnevenGround::TABLE_I, &GroundTuning::DEFAULT);
-        (0..64).for_each(|y| map.classify(&limits, y));
+        let rows = map.heights().all_rows();
+        (0..64).for_each(|y| map.classify(&rows, &limits, y));
         map
     }
 

@@ -27,7 +27,7 @@
 mod opening;
 
 use crate::geometry::{CELL_M, Cell};
-use crate::grid::at;
+use crate::grid::masked;
 use crate::map::Tiles;
 use crate::path::rays::{RAYS, RAYS_A_SIDE, along, ray};
 
@@ -35,6 +35,8 @@ use crate::path::rays::{RAYS, RAYS_A_SIDE, along, ray};
 const MOST_REACH: i32 = 31;
 /// Side of the square of cells around the place.
 const SIDE: usize = 2 * MOST_REACH as usize + 1;
+/// Rows in memory: one more than the square has, so that a mask keeps an index inside.
+const ROWS: usize = SIDE + 1;
 /// The place in its square.
 const MIDDLE: Cell = Cell {
     x: MOST_REACH,
@@ -50,7 +52,7 @@ type Pair = [u32; 2];
 /// What is around a place.
 pub(crate) struct View {
     /// The square's rows, from the least x on.
-    rows: [[Pair; WORDS]; SIDE],
+    rows: [[Pair; WORDS]; ROWS],
     /// Distance that the robot's centre keeps from obstacles, cells.
     clearance: i32,
     /// Length of the rays, cells.
@@ -67,8 +69,8 @@ impl View {
         clearance: i32,
     ) -> Self {
         let mut reader = tiles.reader(from.x - MOST_REACH).of_room(true);
-        let mut rows = [[[0; 2]; WORDS]; SIDE];
-        for (y, pairs) in rows.iter_mut().enumerate() {
+        let mut rows = [[[0; 2]; WORDS]; ROWS];
+        for (y, pairs) in rows.iter_mut().enumerate().take(SIDE) {
             let row = reader.row(from.y - MOST_REACH + y as i32);
             let (unknown, closed) = (row.unknown(), row.obstacle());
             *pairs = [0, 32].map(|x| [(unknown >> x) as u32, (closed >> x) as u32]);
@@ -104,27 +106,34 @@ impl View {
 
     /// Returns the unexplored cells that a ray stands for: Σ k over its runs of unexplored cells.
     fn along(&self, ray: (i32, i32)) -> i32 {
-        let rows = self.rows.as_flattened();
-        let (mut before, mut run) = (0, None);
+        let Some(rows) = self.rows.as_flattened().first_chunk::<{ ROWS * WORDS }>() else {
+            return 0;
+        };
+        // Where the run of unexplored cells begins; 0 outside of a run.
+        let (mut before, mut first) = (0, 0);
         let (mut x, mut y) = (16 * MIDDLE.x + 8, 16 * MIDDLE.y + 8);
         let beyond = self.reach + 1;
         // A range with `..=` would cost ten instructions more a cell.
         for k in 1..beyond {
             (x, y) = (x + ray.0, y + ray.1);
-            let [unknown, closed] = at(rows, place(x >> 4, y >> 4));
+            let [unknown, closed] = *masked(rows, place(x >> 4, y >> 4));
             let bit = 1 << (x >> 4 & 31);
-            if unknown & bit != 0 {
-                run = run.or(Some(k));
-            } else if let Some(first) = run.take() {
-                before += sum(first, k);
+            // Most cells are explored and free.
+            if unknown & bit == 0 {
+                if first > 0 {
+                    before += sum(first, k);
+                    first = 0;
+                }
+            } else if first == 0 {
+                first = k;
             }
             if closed & bit != 0 {
                 return before;
             }
         }
-        let Some(first) = run else {
+        if first == 0 {
             return before;
-        };
+        }
         let nearest = first + 2 * self.clearance + 1;
         let is_cut = nearest < beyond && self.is_near(along(MIDDLE, ray, first));
         before + sum(first, if is_cut { nearest } else { beyond })

@@ -28,11 +28,18 @@ impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
             window, local_grid, ..
         } = &mut *self.workspace;
         let crossed = crossed(ground, &heights, window, local_grid);
+        let any_crossed = crossed.iter().any(|&row| row != 0);
+        // Of a cell that was never measured.
+        let plain = preferences.of_cell(ground, global, None);
+        let unmeasured = Preference::nearest(plain);
         window.change_preferences(|x, y, old| {
-            if LocalGrid::has(&crossed, (x, y)) {
+            if any_crossed && LocalGrid::has(&crossed, (x, y)) {
                 return Preference::nearest(ground.least_preference);
             }
             let height_m = heights.height_m(local_grid.cell(x, y));
+            if height_m.is_none() && !has_sides {
+                return unmeasured;
+            }
             let difference_m = height_m.map(|height_m| height_m - self.input.pose.z_m);
             let epsilon = preferences.of_cell(ground, global, difference_m);
             let side = if has_sides { old.get().to_num() } else { 0.0 };

@@ -154,7 +154,8 @@ fn delete(tiling: Tiling<'_>, words: &mut [u32], losses: &[u32], touched: &mut [
     let (losses, _) = losses.as_chunks::<PAGE_WORDS>();
     let pages = words.chunks_exact_mut(PAGE_WORDS).zip(losses);
     for (place, (page, losses)) in pages.enumerate() {
-        if *losses == [0; PAGE_WORDS] {
+        // Comparing the arrays would compare their bytes, one by one.
+        if losses.iter().fold(0, |all, lost| all | lost) == 0 {
             continue;
         }
         touch(touched, &tiling.around(place), losses);

@@ -26,8 +26,8 @@ use crate::cli::robot::RobotArgs;
 use crate::cli::strategies;
 use crate::cli::values::{
     area, budget, failing, ground_parameters, home_at, impatience, imu_noise, known_pose,
-    laser_noise, live, patrol_for, pause, people, place, slam_place, snapshots, start, sweeps,
-    wait, working,
+    laser_noise, live, patrol_for, pause, people, period, place, slam_place, snapshots, start,
+    sweeps, wait, working,
 };
 
 #[derive(Clone, Debug, Args)]
@@ -98,6 +98,15 @@ pub(in crate::cli) struct ExploreArgs {
     pub(in crate::cli) failing_limits: Option<Limits>,
     #[command(flatten)]
     pub(in crate::cli) pace: PaceArgs,
+    /// Milliseconds from one step of the device to the next, 100 to 400
+    #[arg(
+        long,
+        value_name = "MS",
+        default_value = "200",
+        value_parser = period,
+        allow_negative_numbers = true
+    )]
+    pub(in crate::cli) period: u16,
     /// Simulated seconds of patrol after everything is explored; for tdbvp
     #[arg(
         long,
@@ -244,6 +253,10 @@ pub(in crate::cli) struct ExploreArgs {
     /// `host-sim replay` runs again
     #[arg(long, value_name = "FILE.mcap")]
     pub(in crate::cli) record: Option<PathBuf>,
+    /// Write the cycles of the emulated chip by stage and function, by the model, as folded stacks
+    /// for flame graphs; for --link qemu
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) profile: Option<PathBuf>,
     #[command(flatten)]
     pub(in crate::cli) robot: RobotArgs,
     /// Print during the run what the robot does and why, as in the file mission.log

@@ -2,8 +2,9 @@
 
 use crate::config::{GroundTuning, UnevenGround};
 use crate::geometry::Cell;
+use crate::grid::at;
 use crate::grid::bits::tests::Rng;
-use crate::ground::classify::RiseLimits;
+use crate::ground::classify::{RiseLimits, is_bridged};
 use crate::ground::elevation::tests::OwnedWindow;
 
 /// The limits of a robot with the default parameters.
@@ -120,24 +121,24 @@ fn rows_of_bits_agree_with_their_cells() {
             1 => window.mark_obstacle(cell),
             2 => window.mark_drop(cell),
             3 => window.mark_possible_drop(cell),
-            _ => window.measure(cell, 0.0),
+            _ => window.measure(cell, 0.1 * (bits >> 20 & 3) as f32),
         }
     }
     let heights = window.read();
+    let all = heights.all_rows();
+    let limits = limits();
     let origin = heights.origin();
     let is_measured = |cell: Cell| heights.fixed(cell).is_some();
     let mut seen = [0; 3];
     for y in origin.y - 2..origin.y + 66 {
-        let (rows, bridges) = (heights.rows(y), super::bridges(&heights, y));
+        let bridged = super::bridged((&heights, &all), &limits, y, u64::MAX);
+        let rows = heights.rows(y);
+        assert_eq!(at(&all, (y - origin.y) as usize), rows, "{y}");
         for k in 0..64 {
             let cell = Cell { x: origin.x + k, y };
-            let bits = [rows.marked, rows.measured, bridges].map(|row| row >> k & 1 == 1);
-            let ends = |a: i32, b: i32| {
-                is_measured(cell.offset(a, 0)) && is_measured(cell.offset(-b, 0))
-                    || is_measured(cell.offset(0, a)) && is_measured(cell.offset(0, -b))
-            };
+            let bits = [rows.marked, rows.measured, bridged].map(|row| row >> k & 1 == 1);
             let is_marked = heights.mark(cell) != 0;
-            let is_bridge = super::BRIDGES.into_iter().any(|(a, b)| ends(a, b));
+            let is_bridge = !is_measured(cell) && is_bridged(&heights, &limits, cell);
             assert_eq!(bits, [is_marked, is_measured(cell), is_bridge], "{cell:?}");
             for (count, bit) in seen.iter_mut().zip(bits) {
                 *count += u32::from(bit);
