@@ -172,8 +172,8 @@ impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
         self.state.drive.look_around(self.config, checker, now)
     }
 
-    /// Returns the velocity without a local goal: zero, or a turn to look around. It is not inlined,
-    /// or its obstacles would lie on the stack of every step.
+    /// Returns the velocity without a local goal: zero, or a turn to look about. It is not inlined:
+    /// its obstacles would lie on the stack of every step.
     #[inline(never)]
     pub(super) fn look_about(&mut self) -> Twist {
         if !self.should_look(Twist::default()) {
