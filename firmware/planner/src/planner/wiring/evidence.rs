@@ -164,7 +164,7 @@ impl Evidence<{ WAYS.len() }> {
             let (ahead, left) = *WAYS.get(number)?;
             // In a curve the wheels count by centimetres too much or too little.
             let is_scale = left == 0.0 && ahead > 0.0;
-            (!is_scale || motion.is_straight()).then(|| Shift {
+            (!is_scale || motion.is_straight()).then_some(Shift {
                 x_m: ahead * motion.x_m - left * motion.y_m,
                 y_m: left * motion.x_m + ahead * motion.y_m,
                 ..*motion
