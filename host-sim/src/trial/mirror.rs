@@ -110,6 +110,8 @@ impl Mirror {
     pub fn forget_arrivals(&mut self) {
         if let Some(config) = &self.config {
             self.map.forget_arrivals(config, self.pose.point().cell());
+            let tuning = &config.tuning().localise;
+            self.localiser.expect_contradiction(tuning);
         }
     }
 

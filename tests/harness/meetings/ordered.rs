@@ -47,7 +47,8 @@ impl Ordered {
         let mut builder = Config::builder(*told.robot())
             .radius_m(told.radius_m())
             .order(Order::Gain { worth: 0.0 })
-            .goal_level(self.level);
+            .goal_level(self.level)
+            .localise(told.localises());
         for laser in told.lasers() {
             builder = builder.laser(*laser);
         }

@@ -186,7 +186,7 @@ impl Localiser {
 
     /// Takes the robot's place for right, whatever scans say, until they are in the map again: the
     /// map was made to forget what stands. A lost robot has no place to take.
-    pub(crate) const fn expect_contradiction(&mut self, tuning: &LocaliseTuning) {
+    pub const fn expect_contradiction(&mut self, tuning: &LocaliseTuning) {
         self.unjudged_steps = tuning.trusted_steps;
     }
 

@@ -49,10 +49,8 @@ impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
         let frontier = &mut state.strategy.frontier;
         let begins = frontier.may_look_again(known_cells, self.input.time_ms);
         if begins {
-            state.map.forget_arrivals(self.config, robot);
-            let tuning = &self.config.tuning.localise;
-            state.localiser.expect_contradiction(tuning);
             frontier.look_again();
+            state.forget_arrivals(self.config, robot);
             state.forgot_arrivals = true;
         }
         begins

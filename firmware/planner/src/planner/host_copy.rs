@@ -32,7 +32,7 @@ pub fn forget_arrivals<const TILES: usize, const SLOTS: usize>(
     config: &Config,
 ) {
     let robot = state.location().pose.0.point().cell();
-    state.map.forget_arrivals(config, robot);
+    state.forget_arrivals(config, robot);
 }
 
 /// Returns the ranges of the last step's input without the beams that end in a peer.

@@ -15,6 +15,7 @@ use crate::doing::{Doing, Events};
 use crate::drive::side_slope::SlopeDirection;
 use crate::drive::{self, Drive};
 use crate::field::preference::Preferences;
+use crate::geometry::Cell;
 use crate::input::InputFaults;
 use crate::localise::{Localiser, Location};
 use crate::map::Map;
@@ -172,6 +173,12 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         } else {
             Doing::Explores
         }
+    }
+
+    /// Takes what came for gone. It may stand, so scans that show it say nothing against the pose.
+    pub(super) fn forget_arrivals(&mut self, config: &Config, robot: Cell) {
+        self.map.forget_arrivals(config, robot);
+        self.localiser.expect_contradiction(&config.tuning.localise);
     }
 
     /// Returns the location after the last step.

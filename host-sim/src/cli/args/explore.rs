@@ -246,7 +246,7 @@ pub(in crate::cli) struct ExploreArgs {
         allow_negative_numbers = true
     )]
     pub(in crate::cli) snapshots: usize,
-    /// Show the run as a film of 10 to 23 s: a GIF, or an MP4 where ffmpeg is installed
+    /// Show the run as a film of at most 23 s: a GIF, or an MP4 where ffmpeg is installed
     #[arg(long, value_name = "FILE.gif|FILE.mp4", conflicts_with = "snapshots")]
     pub(in crate::cli) film: Option<PathBuf>,
     /// Record the run in a file that Foxglove, Lichtblick, Rerun and rosbags read, and that
