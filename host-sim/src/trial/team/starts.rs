@@ -4,8 +4,8 @@
 //! nearest to it where it fits, has [`WALL_M`] to every wall, and can turn on the spot beside the
 //! others. All face the same way. *Apart*: the next robot takes the start of the world that is
 //! farthest from all robots so far; if the world has too few starts, the farthest place of a
-//! lattice where it can turn on the spot. Only places that the first robot can reach count, and only
-//! those where bounds and no-go polygons let a robot stand. Metres.
+//! lattice where it can turn on the spot. Only places that the first robot can reach count, and
+//! only those where bounds and no-go polygons let a robot stand. Metres.
 
 use crate::metrics::CellSet;
 use crate::robot::Pose;
