@@ -1,6 +1,7 @@
-//! World files: what is read from them, and the error line for each fault.
+//! Files of worlds and of known maps: what is read from them, and the error line for each fault.
 
 mod heights;
+mod known_maps;
 mod maps;
 
 use std::fs;
