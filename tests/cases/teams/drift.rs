@@ -24,7 +24,7 @@ fn is_one_map(apart: &Agreement) -> bool {
 }
 
 /// Returns the runs in a world: the truth, odometry that drifts, and starts known only roughly.
-fn settings(world: &World, robots: usize, seed: u64) -> [TeamRun<'_>; 3] {
+pub(crate) fn settings(world: &World, robots: usize, seed: u64) -> [TeamRun<'_>; 3] {
     let truth = TeamRun {
         seed,
         ..TeamRun::of(world, robots)

@@ -17,11 +17,11 @@ use host_sim::report::{Report, TeamReport};
 use host_sim::trial::mission::OdometryProfile;
 use host_sim::world::World;
 
+use crate::drift::settings;
+
 const WORLDS: [&str; 3] = ["office", "hall", "cave"];
 /// Side of a map cell, metres.
 const CELL_M: f64 = 0.1;
-/// Standard deviations of a robot that somebody put there by hand: 0.3 m and 5°.
-const BY_HAND: &str = "0.3,5";
 
 /// Draws bounds and up to three triangles in which the first robot can stand.
 fn fence(world: &World, seed: u64) -> Fence {
@@ -70,20 +70,8 @@ fn go(robots: &[usize], seeds: Range<u64>) -> (String, Vec<String>) {
         .flat_map(|it| robots.iter().map(move |robots| (it, robots)))
     {
         for (seed, fence) in seeds.clone().zip(drawn) {
-            let truth = TeamRun {
-                fence: Some(fence),
-                seed,
-                ..TeamRun::of(world, robots)
-            };
-            let drifts = TeamRun {
-                odometry: OdometryProfile::Noisy,
-                ..truth
-            };
-            let by_hand = TeamRun {
-                start_error: BY_HAND,
-                ..drifts
-            };
-            runs.extend([truth, drifts, by_hand]);
+            let fence = Some(fence);
+            runs.extend(settings(world, robots, seed).map(|run| TeamRun { fence, ..run }));
         }
     }
     let reports = in_parallel(&runs, TeamRun::go);

@@ -184,8 +184,9 @@ impl Localiser {
         }
     }
 
-    /// Takes the robot's place for right, whatever scans say, until they are in the map again: the
-    /// map was made to forget what stands. A lost robot has no place to take.
+    /// Doubts no scan for a while. The map was made to forget obstacles that may still stand, so a
+    /// scan that shows them says nothing against the pose. A lost robot never plans, so it never
+    /// makes its map forget.
     pub const fn expect_contradiction(&mut self, tuning: &LocaliseTuning) {
         self.unjudged_steps = tuning.trusted_steps;
     }
