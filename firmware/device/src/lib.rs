@@ -35,9 +35,9 @@ pub use session::{Boot, Session};
 pub const STALE_MS: u16 = 500;
 /// Number of tiles in the map's pool of the default image: 2048 m². More would take the memory that
 /// is left for localisation.
-pub const TILES: usize = 200;
+pub const TILES: usize = 172;
 /// Number of tiles that the map of the default image may have, those that need little or no place
 /// in the pool included.
-pub const SLOTS: usize = 250;
+pub const SLOTS: usize = 368;
 /// The planner's state in the default image.
 pub type State = fieldline_planner::State<TILES, SLOTS>;

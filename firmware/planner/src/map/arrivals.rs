@@ -113,11 +113,8 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     #[inline(never)]
     fn lone_arrivals(&self, (tile_x, tile_y): (i32, i32)) -> [u32; TILE_ROWS] {
         let mut lone = [0; TILE_ROWS];
-        let came = self
-            .tiles
-            .column(tile_x, tile_y)
-            .is_some_and(|it| it.has_negative());
-        if !came {
+        let stored = self.tiles.stored(self.tiles.entry(tile_x, tile_y));
+        if !stored.is_some_and(|stored| stored.has_negative()) {
             return lone;
         }
         let first_y = tile_y * TILE_SIDE;

@@ -1,45 +1,57 @@
-//! Tile compaction: a tile with little content takes less than a page of the pool.
+//! Tile compaction: a tile far from the robot takes less than a page of the pool.
 //!
-//! | content of a tile | storage |
-//! | --- | --- |
-//! | free from edge to edge | its entry of the directory |
-//! | no obstacle | its low plane, half a page |
-//! | other | a page: low plane, high plane |
+//! When pages run short, the map *compacts* tiles, the farthest from the robot first: each becomes
+//! its [`code`](super::code), which loses nothing. Codes share pages, in units of 16 bytes. A tile
+//! that is to be written is *expanded*: it takes a page again. Reading needs no page.
 //!
-//! Uneven ground shares the pool with the marks of its window. Open ground of 50 × 50 m then has
-//! twice as many tiles as there are pages. So when pages run short, the map *compacts* every tile
-//! away from the robot, and *expands* it before the robot's window reaches it. A compact tile reads
-//! as before, without the robot's trail. It cannot be written, except that a free tile accepts free
-//! cells.
+//! | ground | a tile is compacted | and expanded |
+//! | --- | --- | --- |
+//! | flat | when a page is wanted and none is spare | by the first write |
+//! | uneven | when less than [`LOW_PAGES`] are spare, in [`Tiles::compact`] | there, around the window |
 //!
-//! Spare pages and spare halves are two lists: the first word of an element is the number of the
-//! next one, plus 1. Two spare halves of the same page become a spare page.
+//! On uneven ground the heights of a tile go with its page, and only their owner, a [`SideTable`],
+//! can keep them. So a write to a compact tile finds no room there.
 //!
-//! Invariant: every page given out is in the directory once, or spare once, or it is two halves of
-//! which this is true, or the team's sample (`exchange`).
+//! Spare pages are a list: the first word of a page is the number of the next one, plus 1. The
+//! pages that codes share are another: their trail, which nothing else uses, has a bit for each
+//! unit in use, and the next one, plus 1.
 //!
-//! Units: pages of 256 bytes, halves of 128 bytes.
+//! Invariant: every page given out is in the directory once, or spare once, or shared and holds a
+//! code, or is the team's sample (`exchange`). A unit is in use if it is part of one code.
+//!
+//! Units: pages of 256 bytes, units of 16 bytes.
 
 #[cfg(test)]
 mod tests;
 
 use crate::geometry::Cell;
-use crate::grid::{inside, inside_mut};
-use crate::map::tiles::{NoRoom, Plane, TILE_ROWS, TILE_SIDE, Tiles};
-use crate::map::versions::MEASURED;
+use crate::grid::{TileKey, inside, inside_mut};
+use crate::map::code::{Code, Writer, set_version};
+use crate::map::tile::{Plane, Stored};
+use crate::map::tiles::{NO_TRAIL, NoRoom, TILE_ROWS, TILE_SIDE, Tiles};
+use crate::map::versions::Version;
 
-/// Flag of the entry of a tile that is all free; the low byte is kept for the side table.
-const ALL_FREE_FLAG: u16 = 0x8000;
-/// Flag of the entry of a tile in half a page.
-const HALF_FLAG: u16 = 0x4000;
-/// With fewer spare pages than this, tiles are compacted. The window touches nine tiles at a time,
-/// and [`RESERVED_PAGES`] stay spare.
+/// Flag of the entry of a compact tile; the other bits are the number of its first unit.
+const CODED_FLAG: u16 = 0x8000;
+/// Units of a page.
+const UNITS: usize = 16;
+/// Words of a unit.
+const UNIT_WORDS: usize = 4;
+/// Pages that an entry can tell units of.
+const MOST_SHARED: usize = CODED_FLAG as usize / UNITS;
+/// On uneven ground tiles are compacted with fewer spare pages than this. The window touches nine
+/// tiles at a time, and [`RESERVED_PAGES`] stay spare.
 const LOW_PAGES: usize = 24;
-/// Pages kept back, once there are compact tiles, to expand those that the robot reaches.
+/// Pages kept back, once there are compact tiles, to expand those that are written.
 const RESERVED_PAGES: usize = 10;
+/// Tiles up to so many columns and rows from the robot's tile stay as they are: the windows of
+/// evidence and of heights are there.
+const NEAR: i32 = 2;
 /// Margin around the window in which tiles are expanded, cells: the window is there in one or two
 /// steps.
 const EXPAND_MARGIN: i32 = 2;
+/// Most tiles that a step compacts or tries to. New tiles of a step are fewer.
+const MOST_TRIES: u16 = 48;
 /// A plane of ones.
 pub(super) static ONES: Plane = [u32::MAX; TILE_ROWS];
 /// A plane of zeros.
@@ -52,20 +64,16 @@ pub(crate) enum Entry {
     Untouched,
     /// Stored in this page.
     Page(usize),
-    /// Stored in half `h`, of page `h / 2`.
-    Half(usize),
-    /// All free; with the byte of the side table.
-    AllFree(i8),
+    /// Its code begins at this unit.
+    Coded(usize),
 }
 
 impl Entry {
     /// Decodes a word of the directory.
     #[inline(always)]
     pub(super) const fn of(word: u16) -> Self {
-        if word & ALL_FREE_FLAG != 0 {
-            Self::AllFree(word as i8)
-        } else if word & HALF_FLAG != 0 {
-            Self::Half((word & !HALF_FLAG) as usize)
+        if word & CODED_FLAG != 0 {
+            Self::Coded((word & !CODED_FLAG) as usize)
         } else if word == 0 {
             Self::Untouched
         } else {
@@ -78,8 +86,7 @@ impl Entry {
         match self {
             Self::Untouched => 0,
             Self::Page(page) => page as u16 + 1,
-            Self::Half(half) => HALF_FLAG | half as u16,
-            Self::AllFree(kept) => ALL_FREE_FLAG | kept as u8 as u16,
+            Self::Coded(unit) => CODED_FLAG | unit as u16,
         }
     }
 }
@@ -90,10 +97,6 @@ pub trait SideTable {
     fn release_page(&mut self, page: usize) -> i8;
     /// Called when a tile is in a page again.
     fn restore_page(&mut self, page: usize, kept: i8);
-    /// Called when a tile moved to this half of a page.
-    fn store_half(&mut self, half: usize, kept: i8);
-    /// Called when a tile gives up its half. Returns the byte that was kept.
-    fn release_half(&mut self, half: usize) -> i8;
 }
 
 /// No side table.
@@ -103,15 +106,9 @@ impl SideTable for () {
     }
 
     fn restore_page(&mut self, _: usize, _: i8) {}
-
-    fn store_half(&mut self, _: usize, _: i8) {}
-
-    fn release_half(&mut self, _: usize) -> i8 {
-        0
-    }
 }
 
-/// The lists of spare pages and halves.
+/// The lists of spare and shared pages, and how far the compaction is.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct FreeList {
     /// Pages given out so far, in order.
@@ -120,10 +117,21 @@ pub(super) struct FreeList {
     pages: u16,
     /// The first spare page, plus 1; 0 if there is none.
     page: u16,
-    /// The first spare half, plus 1; 0 if there is none.
-    half: u16,
+    /// The first shared page, plus 1; 0 if there is none.
+    shared: u16,
     /// Number of compact tiles.
     compact: u16,
+    /// Tiles that this step tried to compact.
+    tries: u16,
+    /// The last tile of the present round that was tried: its distance and key. The next one is
+    /// nearer.
+    last: Option<(i32, TileKey)>,
+    /// The round made a tile compact.
+    gained: bool,
+    /// The robot's tile.
+    centre: (i32, i32),
+    /// No tile can be compacted that would make room.
+    is_exhausted: bool,
 }
 
 impl FreeList {
@@ -132,14 +140,33 @@ impl FreeList {
         given: 0,
         pages: 0,
         page: 0,
-        half: 0,
+        shared: 0,
         compact: 0,
+        tries: 0,
+        last: None,
+        gained: false,
+        centre: (0, 0),
+        is_exhausted: false,
     };
 
     /// Returns the number of pages in use.
     pub(super) const fn used(&self) -> usize {
         (self.given - self.pages) as usize
     }
+
+    /// Begins a step of a robot in a cell.
+    pub(super) fn follow(&mut self, robot: Cell) {
+        let tile = (robot.x >> 5, robot.y >> 5);
+        self.tries = 0;
+        if tile != self.centre {
+            (self.centre, self.last, self.gained) = (tile, None, false);
+        }
+    }
+}
+
+/// Returns the bits of some units.
+const fn run(first: usize, units: usize) -> u16 {
+    (((1_u32 << units) - 1) << first) as u16
 }
 
 impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
@@ -148,21 +175,39 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         self.capacity().saturating_sub(self.free.used())
     }
 
-    /// Returns true if an untouched tile may take a page.
-    pub(super) fn has_page(&self) -> bool {
-        let kept_back = if self.free.compact > 0 {
-            RESERVED_PAGES
-        } else {
-            0
+    /// Returns true if an untouched tile may take a page that is spare.
+    fn has_spare_page(&self) -> bool {
+        let kept_back = match self.free.compact {
+            0 => 0,
+            _ => RESERVED_PAGES,
         };
         self.free_pages() > kept_back
     }
 
-    /// Takes a page; its content is undefined.
-    pub(super) fn take_page(&mut self) -> Result<usize, NoRoom> {
+    /// Returns true if an untouched tile may take a page.
+    pub(super) fn has_page(&self) -> bool {
+        self.has_spare_page() || !(self.is_lent() || self.free.is_exhausted)
+    }
+
+    /// Takes a page for an untouched tile.
+    ///
+    /// # Errors
+    /// [`NoRoom::Pool`], or [`NoRoom::Later`] if this step has made all the room that it may.
+    pub(super) fn take_new_page(&mut self) -> Result<usize, NoRoom> {
+        if !self.has_spare_page() {
+            if !self.has_page() {
+                return Err(NoRoom::Pool);
+            }
+            self.make_room(RESERVED_PAGES + 1, &mut ())?;
+        }
+        self.take_page()
+    }
+
+    /// Takes a spare page; its content is undefined.
+    fn take_page(&mut self) -> Result<usize, NoRoom> {
         if let Some(page) = self.free.page.checked_sub(1) {
             let page = usize::from(page);
-            self.free.page = self.next(2 * page);
+            self.free.page = self.words(page).first().map_or(0, |link| *link as u16);
             self.free.pages -= 1;
             return Ok(page);
         }
@@ -172,21 +217,6 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
         self.free.given += 1;
         Ok(page)
-    }
-
-    fn plane_mut(&mut self, half: usize) -> Option<&mut Plane> {
-        inside_mut(self.pool.as_flattened_mut(), half)
-    }
-
-    /// Returns the link in the first word of a spare half or page.
-    fn next(&self, half: usize) -> u16 {
-        inside(self.pool.as_flattened(), half).map_or(0, |[link, ..]| *link as u16)
-    }
-
-    fn set_next(&mut self, half: usize, next: u16) {
-        if let Some([link, ..]) = self.plane_mut(half) {
-            *link = next.into();
-        }
     }
 
     /// Returns the words of a page that was taken for another use than a tile.
@@ -202,108 +232,178 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
 
     /// Gives a page back.
     pub(super) fn return_page(&mut self, page: usize) {
-        self.set_next(2 * page, self.free.page);
+        let next = u32::from(self.free.page);
+        if let Some(link) = self.words_mut(page).first_mut() {
+            *link = next;
+        }
         self.free.page = page as u16 + 1;
         self.free.pages += 1;
+        self.free.is_exhausted = false;
     }
 
-    /// Returns a half to the list; if the other half of the page is spare, returns the page.
-    fn return_half(&mut self, half: usize) {
-        let other = (half ^ 1) as u16 + 1;
-        let mut before = None;
-        let mut at = self.free.half;
-        while let Some(here) = at.checked_sub(1) {
-            let next = self.next(here.into());
-            if at == other {
-                match before {
-                    Some(before) => self.set_next(before, next),
-                    None => self.free.half = next,
-                }
-                return self.return_page(half / 2);
+    /// Returns the code that begins at a unit.
+    pub(super) fn code(&self, unit: usize) -> Code<'_> {
+        let words = self.words(unit / UNITS);
+        Code::new(words.get(unit % UNITS * UNIT_WORDS..).unwrap_or_default())
+    }
+
+    /// Returns the byte of the side table that the code at a unit keeps.
+    pub(crate) fn kept(&self, unit: usize) -> i8 {
+        self.code(unit).kept()
+    }
+
+    /// Writes the version of a compact tile.
+    pub(super) fn set_coded_version(&mut self, unit: usize, version: Version) {
+        let words = self.words_mut(unit / UNITS);
+        let code = words.get_mut(unit % UNITS * UNIT_WORDS..);
+        set_version(code.unwrap_or_default(), version);
+    }
+
+    /// Returns the units in use of a shared page, and the next shared page, plus 1.
+    fn share(&self, page: usize) -> [u16; 2] {
+        let trail = inside(&self.trail, page).unwrap_or(&NO_TRAIL);
+        let [used, next, ..] = *trail;
+        [used, next]
+    }
+
+    fn set_share(&mut self, page: usize, share: [u16; 2]) {
+        if let Some([used, next, ..]) = inside_mut(&mut self.trail, page) {
+            [*used, *next] = share;
+        }
+    }
+
+    /// Returns a run of units that are not in use, of a page that is shared or is from now on.
+    fn take_units(&mut self, units: usize) -> Option<usize> {
+        let mut at = self.free.shared;
+        while let Some(page) = at.checked_sub(1).map(usize::from) {
+            let [used, next] = self.share(page);
+            let fits = |first: &usize| used & run(*first, units) == 0;
+            if let Some(first) = (0..=UNITS - units).find(fits) {
+                self.set_share(page, [used | run(first, units), next]);
+                return Some(UNITS * page + first);
             }
-            (before, at) = (Some(usize::from(here)), next);
+            at = next;
         }
-        self.set_next(half, self.free.half);
-        self.free.half = half as u16 + 1;
-    }
-
-    /// Expands the tiles around the square of `side` cells at `window`. If pages run short,
-    /// compacts all others.
-    pub(super) fn compact(&mut self, window: Cell, side: i32, side_table: &mut impl SideTable) {
-        let is_short = self.free_pages() < LOW_PAGES;
-        if !is_short && self.free.compact == 0 {
-            return;
-        }
-        let is_near = |tile: i32, from: i32| {
-            let least = tile * TILE_SIDE;
-            least + TILE_SIDE > from - EXPAND_MARGIN && least < from + side + EXPAND_MARGIN
-        };
-        for place in 0..self.directory.keys().len() {
-            let Some((x, y)) = self.tile_at(place) else {
-                continue;
-            };
-            if is_near(x, window.x) && is_near(y, window.y) {
-                // Without room the tile stays compact until the next call.
-                let _ = self.expand_tile(place, side_table);
-            } else if is_short {
-                self.compact_tile(place, side_table);
-            }
-        }
-    }
-
-    /// Expands all tiles.
-    ///
-    /// # Errors
-    /// [`NoRoom`] if the pool is full.
-    pub(super) fn expand_all(&mut self) -> Result<(), NoRoom> {
-        let mut places = 0..self.directory.keys().len();
-        places.try_for_each(|place| self.expand_tile(place, &mut ()))
-    }
-
-    /// Returns the column and the row of the tile at a place of the directory.
-    fn tile_at(&self, place: usize) -> Option<(i32, i32)> {
-        let &key = inside(self.directory.keys(), place)?;
-        Some(self.directory.tile(key))
-    }
-
-    fn compact_tile(&mut self, place: usize, side_table: &mut impl SideTable) {
-        let Entry::Page(page) = self.entry_at(place) else {
-            return;
-        };
-        let Some(&[low, high]) = inside(&self.pool, page) else {
-            return;
-        };
-        // A compact tile has no place for an epoch.
-        if high != ZEROS || self.versions.epoch(page) != MEASURED {
-            return;
-        }
-        let kept = side_table.release_page(page);
-        let entry = if low == ONES {
+        let page = self.take_page().ok()?;
+        if page >= MOST_SHARED {
             self.return_page(page);
-            Entry::AllFree(kept)
-        } else {
-            let half = self.move_low(page, low);
-            side_table.store_half(half, kept);
-            Entry::Half(half)
-        };
-        self.free.compact += 1;
-        self.enter(place, entry);
+            return None;
+        }
+        self.set_share(page, [run(0, units), self.free.shared]);
+        self.free.shared = page as u16 + 1;
+        Some(UNITS * page)
     }
 
-    /// Moves the low plane of a page to a spare half, or leaves it in place if there is none. The
-    /// rest of the page becomes spare. Returns the half.
-    fn move_low(&mut self, page: usize, low: Plane) -> usize {
-        let Some(half) = self.free.half.checked_sub(1) else {
-            self.return_half(2 * page + 1);
-            return 2 * page;
-        };
-        let half = usize::from(half);
-        self.free.half = self.next(half);
-        if let Some(plane) = self.plane_mut(half) {
-            *plane = low;
+    /// Gives units back. A page without a unit in use is spare.
+    fn return_units(&mut self, unit: usize, units: usize) {
+        let page = unit / UNITS;
+        let [used, next] = self.share(page);
+        let left = used & !run(unit % UNITS, units);
+        self.set_share(page, [left, next]);
+        if left != 0 {
+            return;
+        }
+        let mut at = self.free.shared;
+        if usize::from(at) == page + 1 {
+            self.free.shared = next;
+        }
+        while let Some(before) = at.checked_sub(1).map(usize::from) {
+            let [used, after] = self.share(before);
+            if usize::from(after) == page + 1 {
+                self.set_share(before, [used, next]);
+            }
+            at = after;
         }
         self.return_page(page);
-        half
+    }
+
+    /// Compacts tiles, the farthest from the robot first, until so many pages are spare.
+    ///
+    /// # Errors
+    /// [`NoRoom::Pool`] if all are compact that can be; [`NoRoom::Later`] if the step has tried
+    /// enough of them.
+    fn make_room(&mut self, pages: usize, side_table: &mut impl SideTable) -> Result<(), NoRoom> {
+        while self.free_pages() < pages {
+            if self.free.tries >= MOST_TRIES {
+                return Err(NoRoom::Later);
+            }
+            self.free.tries += 1;
+            if let Some((place, distance)) = self.farthest() {
+                self.free.last = Some(distance);
+                self.free.gained |= self.compact_tile(place, side_table);
+            } else if self.free.gained {
+                (self.free.last, self.free.gained) = (None, false);
+            } else {
+                self.free.is_exhausted = true;
+                return Err(NoRoom::Pool);
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the farthest tile with a page that was not tried yet: its place in the directory,
+    /// and its distance with its key.
+    #[inline(never)]
+    fn farthest(&self) -> Option<(usize, (i32, TileKey))> {
+        let (column, row) = self.free.centre;
+        let mut best = None;
+        for (place, &key) in self.directory.keys().iter().enumerate() {
+            let (x, y) = self.directory.tile(key);
+            let (dx, dy) = ((x - column).abs(), (y - row).abs());
+            let distance = (dx * dx + dy * dy, key);
+            let is_next = dx.max(dy) > NEAR
+                && self.free.last.is_none_or(|last| distance < last)
+                && best.is_none_or(|(_, most)| distance > most);
+            if is_next && matches!(self.entry_at(place), Entry::Page(_)) {
+                best = Some((place, distance));
+            }
+        }
+        best
+    }
+
+    /// Replaces the page of a tile by its code, if that is shorter. Returns true then.
+    #[inline(never)]
+    fn compact_tile(&mut self, place: usize, side_table: &mut impl SideTable) -> bool {
+        let Entry::Page(page) = self.entry_at(place) else {
+            return false;
+        };
+        let Some((cells, trail)) = inside(&self.pool, page).zip(inside(&self.trail, page)) else {
+            return false;
+        };
+        let version = self.versions.of(page);
+        let Some(mut code) = Writer::of(cells, trail, version) else {
+            return false;
+        };
+        code.keep(side_table.release_page(page));
+        self.return_page(page);
+        // The page itself is spare, so there are units.
+        let units = code.words().len().div_ceil(UNIT_WORDS);
+        let unit = self.take_units(units).unwrap_or(UNITS * page);
+        let to = self.words_mut(unit / UNITS).iter_mut();
+        let to = to.skip(unit % UNITS * UNIT_WORDS);
+        to.zip(code.words()).for_each(|(to, word)| *to = *word);
+        self.free.compact += 1;
+        self.enter(place, Entry::Coded(unit));
+        true
+    }
+
+    /// Gives a compact tile that is to be written a page. For flat ground.
+    ///
+    /// # Errors
+    /// [`NoRoom::Later`] if there is none in this step.
+    pub(super) fn expand_to_write(&mut self, tile: (i32, i32)) -> Result<usize, NoRoom> {
+        if self.is_lent() {
+            return Err(NoRoom::Later);
+        }
+        if self.free_pages() == 0 {
+            self.make_room(1, &mut ()).or(Err(NoRoom::Later))?;
+        }
+        let place = self.directory.place(tile).ok_or(NoRoom::Box)?;
+        self.expand_tile(place, &mut ())?;
+        match self.entry_at(place) {
+            Entry::Page(page) => Ok(page),
+            _ => Err(NoRoom::Later),
+        }
     }
 
     /// Gives the tile at a place of the directory a page, if it is compact.
@@ -315,23 +415,86 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         place: usize,
         side_table: &mut impl SideTable,
     ) -> Result<(), NoRoom> {
-        let entry = self.entry_at(place);
-        let (low, kept) = match entry {
-            Entry::Untouched | Entry::Page(_) => return Ok(()),
-            Entry::AllFree(kept) => (ONES, kept),
-            Entry::Half(half) => (self.plane_mut(half).map_or(ZEROS, |low| *low), 0),
+        let Entry::Coded(unit) = self.entry_at(place) else {
+            return Ok(());
         };
         let page = self.take_page()?;
-        let kept = if let Entry::Half(half) = entry {
-            self.return_half(half);
-            side_table.release_half(half)
-        } else {
-            kept
-        };
-        self.fill_page(page, [low, ZEROS]);
+        let code = self.code(unit);
+        let (units, kept) = (code.length().div_ceil(UNIT_WORDS), code.kept());
+        let (cells, trail, version) = (code.cells(), code.trail(), code.version());
+        self.return_units(unit, units);
+        self.fill_page(page, cells);
+        if let Some(place) = inside_mut(&mut self.trail, page) {
+            *place = trail;
+        }
+        self.versions.put(page, version);
         side_table.restore_page(page, kept);
         self.free.compact -= 1;
         self.enter(place, Entry::Page(page));
         Ok(())
+    }
+
+    /// Expands all tiles.
+    ///
+    /// # Errors
+    /// [`NoRoom`] if the pool is full.
+    pub(super) fn expand_all(&mut self) -> Result<(), NoRoom> {
+        let mut places = 0..self.directory.keys().len();
+        places.try_for_each(|place| self.expand_tile(place, &mut ()))
+    }
+
+    /// Forgets a tile. Returns the page that it gave back.
+    pub(super) fn forget_tile(&mut self, tile: (i32, i32)) -> Option<usize> {
+        let page = match self.entry(tile.0, tile.1) {
+            Entry::Untouched => return None,
+            Entry::Page(page) => {
+                self.return_page(page);
+                Some(page)
+            }
+            Entry::Coded(unit) => {
+                let units = self.code(unit).length().div_ceil(UNIT_WORDS);
+                self.return_units(unit, units);
+                self.free.compact -= 1;
+                None
+            }
+        };
+        self.directory.remove(tile);
+        page
+    }
+
+    /// Returns a tile as it is stored; `None` if it is untouched.
+    pub(super) fn stored(&self, entry: Entry) -> Option<Stored<'_>> {
+        match entry {
+            Entry::Untouched => None,
+            Entry::Page(page) => {
+                let (cells, trail) = (inside(&self.pool, page)?, inside(&self.trail, page)?);
+                Some(Stored::Page { cells, trail })
+            }
+            Entry::Coded(unit) => Some(Stored::Coded(self.code(unit))),
+        }
+    }
+
+    /// On uneven ground: expands the tiles around the square of `side` cells at `window`, and
+    /// compacts others if pages run short.
+    pub(super) fn compact(&mut self, window: Cell, side: i32, side_table: &mut impl SideTable) {
+        let is_short = self.free_pages() < LOW_PAGES;
+        if is_short {
+            // What is not compacted in this step is in the next one.
+            let _ = self.make_room(LOW_PAGES, side_table);
+        }
+        if self.free.compact == 0 {
+            return;
+        }
+        let is_near = |tile: i32, from: i32| {
+            let least = tile * TILE_SIDE;
+            least + TILE_SIDE > from - EXPAND_MARGIN && least < from + side + EXPAND_MARGIN
+        };
+        for place in 0..self.directory.keys().len() {
+            let tile = inside(self.directory.keys(), place).map(|&key| self.directory.tile(key));
+            if tile.is_some_and(|(x, y)| is_near(x, window.x) && is_near(y, window.y)) {
+                // Without room the tile stays compact until the next call.
+                let _ = self.expand_tile(place, side_table);
+            }
+        }
     }
 }

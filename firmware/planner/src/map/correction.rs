@@ -22,7 +22,7 @@
 
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::bits::ones;
-use crate::map::compaction::{Entry, ZEROS};
+use crate::map::compaction::ZEROS;
 use crate::map::tiles::{Cells, NO_TRAIL, NoRoom, TILE_SIDE, Tiles};
 use crate::map::{Map, SideTable};
 use crate::math;
@@ -49,8 +49,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         let mut spare = None;
         match self.tiles.replace(tile, planes, in_team) {
             Ok(page) => spare = page,
-            Err(NoRoom::Box) => self.out_of_box = true,
-            Err(NoRoom::Pool) => self.pool_full = true,
+            Err(no_room) => self.record_failure(no_room),
         }
         // On uneven ground heights have this memory.
         if !self.tiles.is_lent() {
@@ -84,11 +83,11 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Returns the trail in a tile: a word is a row of blocks, bit k of it block k.
     #[must_use]
     pub fn trail_rows(&self, (column, row): (i32, i32)) -> [u16; 16] {
-        let tile = self.tiles.column(column, row);
-        tile.map_or(NO_TRAIL, |tile| *tile.visited)
+        let stored = self.tiles.stored(self.tiles.entry(column, row));
+        stored.map_or(NO_TRAIL, |stored| stored.trail())
     }
 
-    /// Adds blocks to the trail in a tile. A tile without a page has none.
+    /// Adds blocks to the trail in a tile. One without room has none.
     pub fn add_trail(&mut self, tile: (i32, i32), rows: &[u16; 16]) {
         self.tiles.mark_blocks(tile, rows);
     }
@@ -101,8 +100,8 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Returns the low and the high plane of a tile; `None` if nothing was ever measured in it.
     #[must_use]
     pub fn planes(&self, tile: (i32, i32)) -> Option<[[u32; 32]; 2]> {
-        let planes = self.tiles.planes(self.tiles.entry(tile.0, tile.1))?;
-        Some(planes.map(|plane| *plane))
+        let stored = self.tiles.stored(self.tiles.entry(tile.0, tile.1))?;
+        Some(stored.cells())
     }
 }
 
@@ -114,18 +113,11 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         in_team: bool,
     ) -> Result<Option<usize>, NoRoom> {
         self.edits = self.edits.wrapping_add(1);
-        let old = match self.entry(tile.0, tile.1) {
-            Entry::Page(page) => Some(page),
-            _ => None,
-        };
-        if *cells == [ZEROS; 2] && !(in_team && old.is_some()) {
-            if let Some(page) = old {
-                self.return_page(page);
-                self.directory.remove(tile);
-            }
-            return Ok(old);
+        let version = self.version(self.entry(tile.0, tile.1));
+        let epoch = version.map(|version| version.epoch);
+        if *cells == [ZEROS; 2] && !(in_team && epoch.is_some()) {
+            return Ok(self.forget_tile(tile));
         }
-        let epoch = old.map(|page| self.versions.epoch(page));
         let page = self.touch(tile.0, tile.1)?;
         self.fill_page(page, *cells);
         if in_team {
@@ -143,6 +135,7 @@ mod tests {
     use super::*;
     use crate::config::{Config, MapTuning, UnevenGround};
     use crate::grid::Class;
+    use crate::map::compaction::Entry;
     use crate::map::exchange::Stand;
     use crate::map::versions::{ERA, MEASURED};
 
@@ -183,6 +176,7 @@ mod tests {
     #[test]
     fn a_tile_without_a_known_cell_gives_its_page_back() {
         let mut map = plan();
+        map.tiles.free.follow(Cell { x: 64, y: 230 });
         for k in 0..4 {
             map.replace((k, 7), &row_of(Class::Obstacle), false);
         }
@@ -235,8 +229,7 @@ mod tests {
     /// Joins another map with what this one says of the tile.
     fn tell(map: &Plan, other: &mut Plan) {
         let view = map.view((0, 0)).expect("it has a version");
-        let said = (view.epoch, &view.planes.map(|plane| *plane));
-        let joined = other.join((0, 0), said, Stand::default(), true);
+        let joined = other.join((0, 0), (view.epoch, &view.cells()), Stand::default(), true);
         assert_eq!(joined, Ok(()));
     }
 
@@ -318,11 +311,11 @@ mod tests {
             );
         }
         map.compact(&mut ());
-        let is_compact = |map: &Map<152, 400>| matches!(map.tiles.entry(7, 93), Entry::Half(_));
+        let is_compact = |map: &Map<152, 400>| matches!(map.tiles.entry(117, 93), Entry::Coded(_));
         assert!(is_compact(&map));
-        map.expand((7, 93), &mut ());
-        map.replace((7, 93), &row_of(Class::Obstacle), false);
+        map.expand((117, 93), &mut ());
+        map.replace((117, 93), &row_of(Class::Obstacle), false);
         assert!(!is_compact(&map));
-        assert_eq!(map.planes((7, 93)), Some(row_of(Class::Obstacle)));
+        assert_eq!(map.planes((117, 93)), Some(row_of(Class::Obstacle)));
     }
 }

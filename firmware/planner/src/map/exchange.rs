@@ -12,9 +12,9 @@ use crate::grid::{Class, inside};
 use crate::map::Map;
 use crate::map::compaction::{Entry, ZEROS};
 use crate::map::join::{hash, join_row, row_of};
-use crate::map::tile::{Cells, Plane};
+use crate::map::tile::{Cells, Stored};
 use crate::map::tiles::{NoRoom, TILE_SIDE, Tiles};
-use crate::map::versions::{ERA, MEASURED};
+use crate::map::versions::{ERA, MEASURED, Version};
 
 /// A tile with its version.
 #[derive(Clone, Copy, Debug)]
@@ -23,8 +23,7 @@ pub(crate) struct TileView<'a> {
     pub(crate) tile: (i32, i32),
     /// Its epoch.
     pub(crate) epoch: u16,
-    /// The low and the high plane of its cells.
-    pub(crate) planes: [&'a Plane; 2],
+    stored: Stored<'a>,
 }
 
 /// The place where the robot stands.
@@ -45,7 +44,12 @@ impl Stand {
 impl TileView<'_> {
     /// Returns a hash of the cells.
     pub(crate) fn hash(&self, salt: u32) -> u32 {
-        hash(self.planes, salt)
+        self.stored.with_planes(|planes| hash(planes, salt))
+    }
+
+    /// Returns the low and the high plane of the cells.
+    pub(crate) fn cells(&self) -> Cells {
+        self.stored.cells()
     }
 
     /// Returns the number of times that the tile's epoch was raised; less than 0 after a move.
@@ -55,7 +59,7 @@ impl TileView<'_> {
 
     /// Returns true if nothing in the tile is known, and no correction forgot it.
     fn is_unknown(&self) -> bool {
-        self.planes == [&ZEROS; 2] && self.epoch < ERA
+        self.epoch < ERA && self.stored.with_planes(|planes| planes == [&ZEROS; 2])
     }
 }
 
@@ -68,16 +72,21 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Returns the tile at a place of the directory; `None` if it has no version.
     fn view_at(&self, place: usize) -> Option<TileView<'_>> {
         let entry = self.entry_at(place);
-        let epoch = match entry {
-            Entry::Page(page) => self.versions.epoch(page),
-            _ => MEASURED,
-        };
         let view = TileView {
             tile: self.directory.tile(*inside(self.directory.keys(), place)?),
-            epoch,
-            planes: self.planes(entry)?,
+            epoch: self.version(entry)?.epoch,
+            stored: self.stored(entry)?,
         };
         (!view.is_unknown()).then_some(view)
+    }
+
+    /// Returns the version of a tile; `None` if it is untouched.
+    pub(super) fn version(&self, entry: Entry) -> Option<Version> {
+        match entry {
+            Entry::Untouched => None,
+            Entry::Page(page) => Some(self.versions.of(page)),
+            Entry::Coded(unit) => Some(self.code(unit).version()),
+        }
     }
 
     fn is_due(&self, place: usize) -> bool {
@@ -88,8 +97,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
 impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     /// Takes a page for the team's sample of another map. Give it back before the map is moved.
     pub(crate) fn take_sample(&mut self) -> Option<usize> {
-        let has_page = self.tiles.has_page();
-        has_page.then(|| self.tiles.take_page().ok()).flatten()
+        self.tiles.take_new_page().ok()
     }
 
     /// Gives the page of the sample back.
@@ -133,10 +141,18 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 
     /// Notes that a tile is said, and returns it; `None` if nothing in it is known.
     pub(crate) fn say_at(&mut self, place: usize) -> Option<TileView<'_>> {
-        if let Entry::Page(page) = self.tiles.entry_at(place) {
-            self.tiles.settle(page);
-            self.tiles.versions.said(page);
+        let entry = self.tiles.entry_at(place);
+        let before = self.tiles.version(entry)?;
+        let said = before.said();
+        match entry {
+            Entry::Untouched => {}
+            Entry::Page(page) => self.tiles.versions.put(page, said),
+            Entry::Coded(unit) => self.tiles.set_coded_version(unit, said),
         }
+        self.tiles.edits = self
+            .tiles
+            .edits
+            .wrapping_add((said.epoch != before.epoch).into());
         self.tiles.view_at(place)
     }
 

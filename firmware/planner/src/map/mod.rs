@@ -3,7 +3,7 @@
 //! | file | holds |
 //! | --- | --- |
 //! | [`tiles`], `tile` | the class of every cell, for the whole run |
-//! | `compaction` | smaller storage for tiles with little content |
+//! | `compaction`, `code` | shorter storage for tiles far from the robot |
 //! | `versions`, [`exchange`], `join` | for a team: tiles with versions, and their joins |
 //! | `rows` | rows of 32 and 64 cells, for all planning |
 //! | `correction` | tiles that replace others |
@@ -19,6 +19,7 @@
 //! Units: map cells of [`CELL_M`](crate::geometry::CELL_M).
 
 pub(crate) mod arrivals;
+mod code;
 pub(crate) mod compaction;
 mod correction;
 mod elevation_layer;
@@ -115,6 +116,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     pub fn observe(&mut self, config: &Config, input: &Input<'_>) {
         let tuning = &config.tuning.map;
         let robot = input.pose.point();
+        self.tiles.free.follow(robot.cell());
         if let Some(ground) = &config.ground {
             self.free_footprint(robot, tuning.stand_radius_m);
             self.record_visit(robot.cell());

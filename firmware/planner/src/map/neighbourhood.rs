@@ -11,8 +11,8 @@
 //! Units: map cells.
 
 use crate::geometry::Cell;
-use crate::grid::{Class, masked, masked_mut};
-use crate::map::tile::Plane;
+use crate::grid::{Class, masked_mut};
+use crate::map::tile::Stored;
 use crate::map::tiles::{TILE_SIDE, Tiles};
 
 /// The inner 3 × 3 cells of a square of 5 × 5.
@@ -24,8 +24,8 @@ const HIGH: usize = 1;
 /// The last column or row of a tile.
 const LAST: i32 = TILE_SIDE - 1;
 
-/// A tile's planes; none if it is untouched.
-type Planes<'a> = Option<[&'a Plane; 2]>;
+/// A tile; none if it is untouched.
+type Tile<'a> = Option<Stored<'a>>;
 
 /// Reads squares of a map. It remembers the tiles of the last ones: the beams of a scan end in few
 /// tiles, and finding a tile costs more than reading it.
@@ -34,7 +34,7 @@ pub(crate) struct Neighbourhood<'a, const TILES: usize, const SLOTS: usize> {
     tiles: &'a Tiles<TILES, SLOTS>,
     /// The last tile of each parity of column and row. The four tiles around a corner have
     /// different ones.
-    last: [((i32, i32), Planes<'a>); 4],
+    last: [((i32, i32), Tile<'a>); 4],
     has_landmarks: bool,
 }
 
@@ -50,8 +50,8 @@ impl<'a, const TILES: usize, const SLOTS: usize> Neighbourhood<'a, TILES, SLOTS>
 
     /// Returns the class of a cell, as [`Tiles::class`].
     pub(crate) fn class(&mut self, cell: Cell) -> Class {
-        let planes = self.planes((cell.x >> 5, cell.y >> 5));
-        let [low, high] = [LOW, HIGH].map(|plane| line(planes, plane, cell.y & LAST));
+        let tile = self.tile((cell.x >> 5, cell.y >> 5));
+        let [low, high] = [LOW, HIGH].map(|plane| line(tile, plane, cell.y & LAST));
         let bit = cell.x & LAST;
         Class::from_bits(low >> bit & 1, high >> bit & 1)
     }
@@ -105,9 +105,9 @@ impl<'a, const TILES: usize, const SLOTS: usize> Neighbourhood<'a, TILES, SLOTS>
         if x > TILE_SIDE - SIDE || y > TILE_SIDE - SIDE {
             return self.square_across(corner, SIDE, PLANE);
         }
-        let planes = self.planes((corner.x >> 5, corner.y >> 5));
+        let tile = self.tile((corner.x >> 5, corner.y >> 5));
         (0..SIDE).fold(0, |square, row| {
-            let bits = line(planes, PLANE, y + row) >> x;
+            let bits = line(tile, PLANE, y + row) >> x;
             square | (bits & ((1 << SIDE) - 1)) << (SIDE * row)
         })
     }
@@ -119,20 +119,20 @@ impl<'a, const TILES: usize, const SLOTS: usize> Neighbourhood<'a, TILES, SLOTS>
         (0..side).fold(0, |square, row| {
             let y = corner.y + row;
             // If both are the same tile, the square ends before the second one begins.
-            let low = line(self.planes((left, y >> 5)), plane, y & LAST);
-            let high = line(self.planes((right, y >> 5)), plane, y & LAST);
+            let low = line(self.tile((left, y >> 5)), plane, y & LAST);
+            let high = line(self.tile((right, y >> 5)), plane, y & LAST);
             let bits = (u64::from(high) << TILE_SIDE | u64::from(low)) >> (corner.x & LAST);
             square | (bits as u32 & ((1 << side) - 1)) << (side * row)
         })
     }
 
-    /// Returns the planes of a tile.
+    /// Returns a tile.
     #[inline]
-    fn planes(&mut self, tile: (i32, i32)) -> Planes<'a> {
+    fn tile(&mut self, tile: (i32, i32)) -> Tile<'a> {
         let parity = (tile.0 & 1 | (tile.1 & 1) << 1) as usize;
         let last = masked_mut(&mut self.last, parity);
         if last.0 != tile {
-            *last = (tile, self.tiles.planes(self.tiles.entry(tile.0, tile.1)));
+            *last = (tile, self.tiles.stored(self.tiles.entry(tile.0, tile.1)));
         }
         last.1
     }
@@ -140,9 +140,10 @@ impl<'a, const TILES: usize, const SLOTS: usize> Neighbourhood<'a, TILES, SLOTS>
 
 /// Returns a row of a plane.
 #[inline(always)]
-fn line(planes: Planes<'_>, plane: usize, row: i32) -> u32 {
-    planes.map_or(0, |[low, high]| {
-        *masked(if plane == LOW { low } else { high }, row as usize)
+fn line(tile: Tile<'_>, plane: usize, row: i32) -> u32 {
+    tile.map_or(0, |stored| {
+        let [low, high] = stored.row(row as usize);
+        if plane == LOW { low } else { high }
     })
 }
 
@@ -152,7 +153,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     pub(crate) fn standing_block(&self, corner: Cell, mut each: impl FnMut(u32)) {
         let (x, shift) = (corner.x >> 5, corner.x & 31);
         for tile_y in [corner.y >> 5, (corner.y >> 5) + 1] {
-            let [left, right] = [x, x + 1].map(|x| self.planes(self.entry(x, tile_y)));
+            let [left, right] = [x, x + 1].map(|x| self.stored(self.entry(x, tile_y)));
             let least = (tile_y << 5).max(corner.y);
             let end = ((tile_y + 1) << 5).min(corner.y + TILE_SIDE);
             for y in least..end {

@@ -4,16 +4,17 @@
 //! stands there: [`Tiles::reader`]. The map's own rooms read what was measured:
 //! [`Tiles::measured`].
 //!
-//! A reader goes up through the map row by row, so it looks tiles up once in 32 rows. Bit k of a
-//! word is column x + k.
+//! A reader goes up through the map row by row, so it looks tiles up once in 32 rows. Where one of
+//! them is compact, it reads four rows at a time. Bit k of a word is column x + k.
 //!
 //! Units: map cells.
 
 use crate::grid::Row;
 use crate::grid::bits::twice;
 use crate::grid::masked;
+use crate::map::code::Code;
 use crate::map::compaction::{ONES, ZEROS};
-use crate::map::tiles::{NO_TRAIL, Plane, TILE_SIDE, Tiles, Visited};
+use crate::map::tiles::{NO_TRAIL, Plane, Stored, TILE_SIDE, Tiles, Visited};
 
 /// Columns of the halo to the left of a [`Line`].
 pub(crate) const HALO: i32 = 16;
@@ -38,18 +39,38 @@ impl Line {
 
 /// The tile of a reader's present rows.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Column<'a> {
-    pub(super) low: &'a Plane,
-    pub(super) high: &'a Plane,
-    pub(super) visited: &'a Visited,
+struct Column<'a> {
+    low: &'a Plane,
+    high: &'a Plane,
+    visited: &'a Visited,
+    /// The tile is compact: this is read, and not what is above.
+    code: Option<Code<'a>>,
 }
 
-impl Column<'_> {
+/// Rows that are read at a time where a tile is compact.
+const BLOCK: usize = 4;
+
+/// A tile's part of some rows: the low and the high bits of the cells, and the trail's blocks.
+#[derive(Clone, Copy, Debug, Default)]
+struct Part {
+    cells: [[u32; BLOCK]; 2],
+    visited: [u16; BLOCK / 2],
+}
+
+/// A tile's part of a row: the low and the high bits of the cells, and the trail's blocks.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    cells: [u32; 2],
+    visited: u16,
+}
+
+impl<'a> Column<'a> {
     /// An untouched tile.
     const EMPTY: Self = Self {
         low: &ZEROS,
         high: &ZEROS,
         visited: &NO_TRAIL,
+        code: None,
     };
     /// A tile that the map has no room for, to a reader of what may be explored.
     const FREE: Self = Self {
@@ -57,22 +78,46 @@ impl Column<'_> {
         ..Self::EMPTY
     };
 
-    /// Returns the low and the high bits of a row.
-    #[inline(always)]
-    fn classes(&self, row: usize) -> [u32; 2] {
-        [self.low, self.high].map(|plane| *masked(plane, row))
+    const fn of(stored: Stored<'a>) -> Self {
+        match stored {
+            Stored::Page { cells, trail } => {
+                let [low, high] = cells;
+                Self {
+                    low,
+                    high,
+                    visited: trail,
+                    code: None,
+                }
+            }
+            Stored::Coded(code) => Self {
+                code: Some(code),
+                ..Self::EMPTY
+            },
+        }
     }
 
-    /// Returns true if a cell is a negative obstacle.
-    pub(super) fn has_negative(&self) -> bool {
-        let mut rows = self.low.iter().zip(self.high);
-        rows.any(|(low, high)| low & high != 0)
+    /// Returns the tile's part of a row. It must not be compact.
+    #[inline(always)]
+    fn piece(&self, row: usize) -> Piece {
+        Piece {
+            cells: [self.low, self.high].map(|plane| *masked(plane, row)),
+            visited: *masked(self.visited, row / 2),
+        }
     }
 
-    /// Returns the trail's blocks in a row.
-    #[inline(always)]
-    fn blocks(&self, row: usize) -> u16 {
-        *masked(self.visited, row / 2)
+    /// Returns the tile's part of the four rows from a multiple of four on.
+    fn part(&self, from: usize) -> Part {
+        if let Some(code) = self.code {
+            return Part {
+                cells: code.block_row(from / BLOCK),
+                visited: [0, 1].map(|k| code.trail_row(from / 2 + k)),
+            };
+        }
+        let rows = |plane: &Plane| core::array::from_fn(|k| *masked(plane, from + k));
+        Part {
+            cells: [rows(self.low), rows(self.high)],
+            visited: [0, 1].map(|k| *masked(self.visited, from / 2 + k)),
+        }
     }
 }
 
@@ -83,6 +128,11 @@ pub(crate) struct RowReader<'a, const TILES: usize, const SLOTS: usize> {
     x: i32,
     tile_y: i32,
     columns: [Column<'a>; 3],
+    /// One of the tiles is compact.
+    has_code: bool,
+    /// Where a tile is compact: the four rows from `parts_from` on.
+    parts: [Part; 3],
+    parts_from: usize,
     /// A tile without room reads as free: nothing of it can be explored.
     only_room: bool,
     /// Forbidden cells read as obstacles.
@@ -99,6 +149,12 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
             x,
             tile_y: i32::MIN,
             columns: [Column::EMPTY; 3],
+            has_code: false,
+            parts: [Part {
+                cells: [[0; BLOCK]; 2],
+                visited: [0; BLOCK / 2],
+            }; 3],
+            parts_from: usize::MAX,
             only_room: false,
             is_fenced: false,
             steady: None,
@@ -135,15 +191,38 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
         }
         for (k, column) in (0..).zip(&mut self.columns) {
             let tile_x = (self.x >> 5) + k;
-            let found = self.tiles.column(tile_x, tile_y);
-            *column = found.unwrap_or_else(|| {
-                if self.only_room && self.tiles.room(tile_x, tile_y).is_err() {
-                    Column::FREE
-                } else {
-                    Column::EMPTY
-                }
-            });
+            let found = self.tiles.stored(self.tiles.entry(tile_x, tile_y));
+            *column = match found {
+                Some(stored) => Column::of(stored),
+                None if self.only_room && self.tiles.room(tile_x, tile_y).is_err() => Column::FREE,
+                None => Column::EMPTY,
+            };
         }
+        self.has_code = self.columns.iter().any(|column| column.code.is_some());
+        self.parts_from = usize::MAX;
+    }
+
+    /// Returns the parts of a row.
+    #[inline(always)]
+    fn pieces(&mut self, row: usize) -> [Piece; 3] {
+        if self.has_code {
+            self.decoded(row)
+        } else {
+            self.columns.each_ref().map(|column| column.piece(row))
+        }
+    }
+
+    #[inline(never)]
+    fn decoded(&mut self, row: usize) -> [Piece; 3] {
+        let (from, k) = (row / BLOCK * BLOCK, row % BLOCK);
+        if from != self.parts_from {
+            self.parts = self.columns.each_ref().map(|column| column.part(from));
+            self.parts_from = from;
+        }
+        self.parts.each_ref().map(|part| Piece {
+            cells: part.cells.each_ref().map(|plane| *masked(plane, k)),
+            visited: *masked(&part.visited, k / 2),
+        })
     }
 
     /// Returns the forbidden ones of the 64 cells of row `y`.
@@ -161,8 +240,9 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
     /// Returns the 64 cells of row `y`.
     pub(crate) fn row(&mut self, y: i32) -> Row {
         let (row, shift) = self.tile_row(y);
-        let [first, second, third] = self.columns.map(|column| column.classes(row));
-        let visited = self.columns.map(|column| twice(column.blocks(row)));
+        let pieces = self.pieces(row);
+        let [first, second, third] = pieces.map(|piece| piece.cells);
+        let visited = pieces.map(|piece| twice(piece.visited));
         let forbidden = self.forbidden(y);
         Row {
             low: join(first[0], second[0], third[0], shift) & !forbidden,
@@ -175,17 +255,18 @@ impl<'a, const TILES: usize, const SLOTS: usize> RowReader<'a, TILES, SLOTS> {
     #[inline(always)]
     pub(crate) fn line(&mut self, y: i32) -> Line {
         let (row, shift) = self.tile_row(y);
-        let [first, second, third] = self.columns.map(|column| column.classes(row));
+        let pieces = self.pieces(row);
+        let [first, second, third] = pieces.map(|piece| piece.cells);
         let around = join(first[1], second[1], third[1], shift) | self.forbidden(y);
         // The cells begin in the first tile or in the second, and end in the next.
         let from = shift + HALO as u32;
-        let [left, middle, right] = &self.columns;
+        let [left, middle, right] = pieces.map(|piece| piece.visited);
         let (low, pair) = if from < 32 {
             (cut(first[0], second[0], from), [left, middle])
         } else {
             (cut(second[0], third[0], from - 32), [middle, right])
         };
-        let [one, other] = pair.map(|column| column.blocks(row));
+        let [one, other] = pair;
         let visited = if one | other == 0 {
             0
         } else {

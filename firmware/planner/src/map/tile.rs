@@ -5,6 +5,7 @@
 //! Units: map cells.
 
 use crate::grid::{Class, masked, masked_mut};
+use crate::map::code::Code;
 use crate::map::tiles::TILE_ROWS;
 use crate::map::versions::News;
 
@@ -12,6 +13,73 @@ use crate::map::versions::News;
 pub(super) type Plane = [u32; TILE_ROWS];
 /// The low plane and the high plane.
 pub(super) type Cells = [Plane; 2];
+
+/// The trail: 16 rows of 16 blocks of 2 × 2 cells.
+pub(super) type Visited = [u16; TILE_ROWS / 2];
+
+/// A tile as it is stored.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Stored<'a> {
+    /// In a page.
+    Page {
+        cells: &'a Cells,
+        trail: &'a Visited,
+    },
+    /// As a code.
+    Coded(Code<'a>),
+}
+
+impl Stored<'_> {
+    /// Returns the low and the high bits of a row.
+    #[inline(always)]
+    pub(super) fn row(&self, row: usize) -> [u32; 2] {
+        match self {
+            Self::Page { cells, .. } => cells.each_ref().map(|plane| *masked(plane, row)),
+            Self::Coded(code) => code.row(row),
+        }
+    }
+
+    /// Returns the class of a cell.
+    pub(super) fn class(&self, row: usize, column: u32) -> Class {
+        let [low, high] = match self {
+            Self::Page { cells, .. } => {
+                let row = |plane| masked::<u32, TILE_ROWS>(plane, row) >> column & 1;
+                cells.each_ref().map(row)
+            }
+            Self::Coded(code) => code.class_bits(row, column),
+        };
+        Class::from_bits(low, high)
+    }
+
+    /// Returns true if a cell is a negative obstacle.
+    pub(super) fn has_negative(&self) -> bool {
+        self.with_planes(|[low, high]| low.iter().zip(high).any(|(low, high)| low & high != 0))
+    }
+
+    /// Returns the cells.
+    pub(super) fn cells(&self) -> Cells {
+        match self {
+            Self::Page { cells, .. } => **cells,
+            Self::Coded(code) => code.cells(),
+        }
+    }
+
+    /// Returns the trail.
+    pub(super) fn trail(&self) -> Visited {
+        match self {
+            Self::Page { trail, .. } => **trail,
+            Self::Coded(code) => code.trail(),
+        }
+    }
+
+    /// Calls a function with the low and the high plane.
+    pub(super) fn with_planes<T>(&self, read: impl FnOnce([&Plane; 2]) -> T) -> T {
+        match self {
+            Self::Page { cells, .. } => read(cells.each_ref()),
+            Self::Coded(code) => read(code.cells().each_ref()),
+        }
+    }
+}
 
 /// A tile that can be read and written. A row is 0 to 31; a column is a bit.
 #[derive(Debug)]

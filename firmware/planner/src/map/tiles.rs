@@ -1,22 +1,21 @@
 //! The tile pool: two bits per cell in pages of 32 × 32 cells. A tile takes a page when its first
 //! cell is stored.
 //!
-//! The directory lists the tiles that were touched, so the map may start anywhere. A tile with
-//! little content takes less than a page (`compaction`).
+//! The directory lists the tiles that were touched, so the map may start anywhere. When pages run
+//! short, tiles far from the robot take less than a page (`compaction`).
 //!
 //! The *trail* has one bit for 2 × 2 cells: the robot's centre was there. Noise may close a passage
-//! as narrow as the robot behind it. The trail keeps the passage open. It is kept with the page, so
-//! a tile that is compacted forgets it: nothing stands there.
+//! as narrow as the robot behind it. The trail keeps the passage open.
 //!
 //! Units: cells of [`crate::geometry::CELL_M`].
 
 use crate::fence::Fence;
 use crate::geometry::Cell;
-use crate::grid::{Class, Row, TileKey, TileMap, inside, inside_mut, masked, masked_mut};
-use crate::map::compaction::{Entry, FreeList, ONES, ZEROS};
+use crate::grid::{Class, Row, TileKey, TileMap, inside_mut, masked_mut};
+use crate::map::compaction::{Entry, FreeList, ZEROS};
 use crate::map::elevation_layer::MARK_TILES;
-use crate::map::rows::{Column, RowReader};
-pub(super) use crate::map::tile::{Cells, Plane, TileMut};
+use crate::map::rows::RowReader;
+pub(super) use crate::map::tile::{Cells, Plane, Stored, TileMut, Visited};
 use crate::map::versions::Versions;
 
 /// The reason why the map has no room for a cell.
@@ -26,12 +25,13 @@ pub enum NoRoom {
     Box,
     /// Every page of the pool is in use, or the directory is full.
     Pool,
+    /// There will be room in one of the next steps.
+    Later,
 }
 
 /// Cells along a tile's side.
 pub const TILE_SIDE: i32 = 32;
 pub(super) const TILE_ROWS: usize = TILE_SIDE as usize;
-pub(super) type Visited = [u16; TILE_ROWS / 2];
 /// The trail in a tile without any.
 pub(super) static NO_TRAIL: Visited = [0; TILE_ROWS / 2];
 
@@ -147,8 +147,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Returns the planes of a tile, as a team's tile has them.
     #[cfg(test)]
     pub(crate) fn planes_of(&self, tile_x: i32, tile_y: i32) -> Option<[[u32; 32]; 2]> {
-        let planes = self.planes(self.entry(tile_x, tile_y))?;
-        Some(planes.map(|plane| *plane))
+        let stored = self.stored(self.entry(tile_x, tile_y))?;
+        Some(stored.cells())
     }
 
     /// Returns true if a cell was ever stored in this tile.
@@ -187,16 +187,6 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// Returns the low and the high plane of a tile; `None` if it is untouched.
-    pub(super) fn planes(&self, entry: Entry) -> Option<[&Plane; 2]> {
-        match entry {
-            Entry::Untouched => None,
-            Entry::Page(page) => inside(&self.pool, page).map(|[low, high]| [low, high]),
-            Entry::Half(half) => Some([inside(self.pool.as_flattened(), half)?, &ZEROS]),
-            Entry::AllFree(_) => Some([&ONES, &ZEROS]),
-        }
-    }
-
     /// Checks that a tile is stored or can be.
     ///
     /// # Errors
@@ -213,19 +203,20 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// Returns the page of a tile; takes a fresh one on first touch. A compact tile has no page.
+    /// Returns the page of a tile; takes one on first touch, and for a compact tile.
     pub(super) fn touch(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
         match self.entry(tile_x, tile_y) {
             Entry::Page(page) => Ok(page),
             Entry::Untouched => self.add(tile_x, tile_y),
-            _ => Err(NoRoom::Pool),
+            Entry::Coded(_) => self.expand_to_write((tile_x, tile_y)),
         }
     }
 
     /// Gives an untouched tile a fresh page.
+    #[inline(never)]
     fn add(&mut self, tile_x: i32, tile_y: i32) -> Result<usize, NoRoom> {
         self.room(tile_x, tile_y)?;
-        let page = self.take_page()?;
+        let page = self.take_new_page()?;
         self.directory
             .get_or_add((tile_x, tile_y), Entry::Page(page).word())
             .ok_or(NoRoom::Box)?;
@@ -247,23 +238,19 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     #[inline(never)]
     #[must_use]
     pub fn class(&self, cell: Cell) -> Class {
-        let Some(planes) = self.planes(self.entry(cell.x >> 5, cell.y >> 5)) else {
-            return Class::Unknown;
-        };
-        let row = (cell.y & 31) as usize;
-        let [low, high] = planes.map(|plane| *masked(plane, row));
-        let bit = cell.x & 31;
-        Class::from_bits(low >> bit & 1, high >> bit & 1)
+        let stored = self.stored(self.entry(cell.x >> 5, cell.y >> 5));
+        stored.map_or(Class::Unknown, |stored| {
+            stored.class((cell.y & 31) as usize, (cell.x & 31) as u32)
+        })
     }
 
-    /// Stores the class of a cell. A compact tile that is free from edge to edge stays as it is if
-    /// the class is free.
+    /// Stores the class of a cell. A compact tile stays as it is if the class is the cell's.
     ///
     /// # Errors
     /// [`NoRoom`] if it is too far off, or the pool is full; the map is then unchanged.
     pub fn set(&mut self, cell: Cell, class: Class) -> Result<(), NoRoom> {
         let tile = (cell.x >> 5, cell.y >> 5);
-        if class == Class::Free && matches!(self.entry(tile.0, tile.1), Entry::AllFree(_)) {
+        if matches!(self.entry(tile.0, tile.1), Entry::Coded(_)) && self.class(cell) == class {
             return Ok(());
         }
         let mut page = self.open(tile)?;
@@ -271,9 +258,18 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         Ok(())
     }
 
+    /// Returns the page of a tile that was touched; `None` if it has none and cannot get one. Then
+    /// the trail has a gap.
+    fn touched_page(&mut self, tile: (i32, i32)) -> Option<usize> {
+        match self.entry(tile.0, tile.1) {
+            Entry::Untouched => None,
+            _ => self.touch(tile.0, tile.1).ok(),
+        }
+    }
+
     /// Marks a cell of the trail: the robot's centre was there.
     pub(crate) fn mark_visited(&mut self, cell: Cell) {
-        let Entry::Page(page) = self.entry(cell.x >> 5, cell.y >> 5) else {
+        let Some(page) = self.touched_page((cell.x >> 5, cell.y >> 5)) else {
             return;
         };
         if let Some(rows) = inside_mut(&mut self.trail, page) {
@@ -281,9 +277,9 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
     }
 
-    /// Marks blocks of the trail in a tile that has a page.
+    /// Marks blocks of the trail.
     pub(super) fn mark_blocks(&mut self, tile: (i32, i32), blocks: &Visited) {
-        let Entry::Page(page) = self.entry(tile.0, tile.1) else {
+        let Some(page) = self.touched_page(tile) else {
             return;
         };
         let rows = inside_mut(&mut self.trail, page).into_iter().flatten();
@@ -326,17 +322,6 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         RowReader::new(self, x)
     }
 
-    /// Returns the planes and the trail of a tile; `None` if it is untouched.
-    pub(super) fn column(&self, tile_x: i32, tile_y: i32) -> Option<Column<'_>> {
-        let entry = self.entry(tile_x, tile_y);
-        let [low, high] = self.planes(entry)?;
-        let visited = match entry {
-            Entry::Page(page) => inside(&self.trail, page)?,
-            _ => &NO_TRAIL,
-        };
-        Some(Column { low, high, visited })
-    }
-
     /// Opens a tile to read and write its cells; takes a page on first touch.
     ///
     /// # Errors
@@ -354,9 +339,10 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// lowest bits; `None` if the tile is untouched.
     #[must_use]
     pub fn packed(&self, tile_x: i32, tile_y: i32) -> Option<[u8; 256]> {
-        let [low, high] = self.planes(self.entry(tile_x, tile_y))?;
+        let stored = self.stored(self.entry(tile_x, tile_y))?;
         let mut bytes = [0; 256];
-        for ((low, high), out) in low.iter().zip(high).zip(bytes.chunks_exact_mut(8)) {
+        for (row, out) in bytes.chunks_exact_mut(8).enumerate() {
+            let [low, high] = stored.row(row);
             for (k, byte) in out.iter_mut().enumerate() {
                 for c in 0..4 {
                     let column = 4 * k + c;

@@ -17,9 +17,9 @@
 use heapless::Vec;
 
 use crate::geometry::{CELL_M, Cell, MapFromOdom};
-use crate::grid::{inside_mut, masked, masked_mut};
+use crate::grid::{inside_mut, masked_mut};
 use crate::map::Map;
-use crate::map::compaction::{Entry, ZEROS};
+use crate::map::compaction::Entry;
 use crate::map::tiles::{NO_TRAIL, NoRoom, TILE_SIDE, Tiles};
 use crate::math;
 
@@ -135,9 +135,8 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     #[inline(never)]
     fn cells(&self, x: i32, y: i32) -> [u32; 2] {
         let word = |column: i32| {
-            let planes = self.planes(self.entry(column, y >> 5));
-            let planes = planes.unwrap_or([&ZEROS; 2]);
-            planes.map(|plane| *masked(plane, (y & 31) as usize))
+            let stored = self.stored(self.entry(column, y >> 5));
+            stored.map_or([0; 2], |stored| stored.row((y & 31) as usize))
         };
         let (column, shift) = (x >> 5, x & 31);
         let here = word(column);

@@ -10,7 +10,8 @@
 //!
 //! A map without a team keeps the marks too, and nobody reads them.
 //!
-//! Invariant: a compact tile has epoch [`MEASURED`] and is not due.
+//! A compact tile keeps its version in its code. It is not due, and asked for all the same.
+//!
 //! Units: sweeps, one a second.
 
 use crate::grid::{inside, inside_mut};
@@ -36,7 +37,49 @@ const MOST_WAITING: u8 = 4;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct News(u8);
 
+/// What the team knows of a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Version {
+    pub(super) epoch: u16,
+    pub(super) news: News,
+}
+
+impl Version {
+    /// The version of a tile that the robot begins.
+    pub(super) const MEASURED: Self = Self {
+        epoch: MEASURED,
+        news: News(0),
+    };
+
+    /// Raises the epoch if a cell's class went down since the tile was said. Returns true then.
+    const fn settle(&mut self) -> bool {
+        let went_down = self.news.0 & WENT_DOWN != 0;
+        if went_down {
+            self.news.0 &= !WENT_DOWN;
+            self.epoch = self.epoch.saturating_add(1);
+        }
+        went_down
+    }
+
+    /// Returns the version of a tile that is said.
+    pub(super) const fn said(mut self) -> Self {
+        self.settle();
+        self.news = News(0);
+        self
+    }
+}
+
 impl News {
+    /// Returns the bits.
+    pub(super) const fn bits(self) -> u8 {
+        self.0
+    }
+
+    /// Returns the news of some bits.
+    pub(super) const fn of_bits(bits: u8) -> Self {
+        Self(bits)
+    }
+
     /// Notes a change of a cell's class, in the order unknown < free < obstacle < negative.
     #[inline(always)]
     pub(super) const fn note(&mut self, before: u32, after: u32) {
@@ -96,9 +139,22 @@ impl<const TILES: usize> Versions<TILES> {
 
     /// Begins a tile in a page.
     pub(super) fn begin(&mut self, page: usize) {
-        self.set_epoch(page, MEASURED);
+        self.put(page, Version::MEASURED);
+    }
+
+    /// Returns the version of the tile in a page.
+    pub(super) fn of(&self, page: usize) -> Version {
+        Version {
+            epoch: self.epoch(page),
+            news: inside(&self.news, page).copied().unwrap_or_default(),
+        }
+    }
+
+    /// Gives the tile in a page a version.
+    pub(super) fn put(&mut self, page: usize, version: Version) {
+        self.set_epoch(page, version.epoch);
         if let Some(news) = self.news_mut(page) {
-            *news = News(0);
+            *news = version.news;
         }
     }
 
@@ -137,12 +193,12 @@ impl<const TILES: usize> Versions<TILES> {
 
     /// Raises the epoch of a page if a cell's class went down. Returns true then.
     pub(super) fn settle(&mut self, page: usize) -> bool {
-        let Some(news) = self.news_mut(page).filter(|news| news.0 & WENT_DOWN != 0) else {
-            return false;
-        };
-        news.0 &= !WENT_DOWN;
-        self.set_epoch(page, self.epoch(page).saturating_add(1));
-        true
+        let mut version = self.of(page);
+        let went_down = version.settle();
+        if went_down {
+            self.put(page, version);
+        }
+        went_down
     }
 
     /// Counts one sweep of all pages. Call it once a second.
@@ -153,13 +209,6 @@ impl<const TILES: usize> Versions<TILES> {
     /// Returns true if a page is to be said now.
     pub(super) fn is_due(&self, page: usize) -> bool {
         inside(&self.news, page).is_some_and(|news| news.is_due())
-    }
-
-    /// Notes that a page is said, after it was settled.
-    pub(super) fn said(&mut self, page: usize) {
-        if let Some(news) = self.news_mut(page) {
-            *news = News(0);
-        }
     }
 }
 
@@ -180,8 +229,7 @@ mod tests {
             versions.sweep();
             if versions.is_due(1) {
                 due.push(sweep);
-                versions.settle(1);
-                versions.said(1);
+                versions.put(1, versions.of(1).said());
             }
             assert!(!versions.is_due(0));
         }
@@ -214,17 +262,14 @@ mod tests {
         let mut versions = Versions::<1>::new();
         versions.begin(0);
         versions.news_mut(0).unwrap().note(0, 2);
-        versions.settle(0);
-        versions.said(0);
+        versions.put(0, versions.of(0).said());
         assert_eq!(versions.epoch(0), MEASURED);
         versions.news_mut(0).unwrap().note(2, 1);
         versions.news_mut(0).unwrap().note(2, 1);
         versions.sweep();
-        versions.settle(0);
-        versions.said(0);
+        versions.put(0, versions.of(0).said());
         assert_eq!(versions.epoch(0), MEASURED + 1);
-        versions.settle(0);
-        versions.said(0);
+        versions.put(0, versions.of(0).said());
         assert_eq!(versions.epoch(0), MEASURED + 1);
     }
 }

@@ -105,10 +105,6 @@ impl<const TILES: usize> HeightLevels<TILES> {
         }
     }
 
-    fn half_mut(&mut self, half: usize) -> Option<&mut i8> {
-        self.blocks.get_mut(half / 2)?.get_mut(half % 2)
-    }
-
     /// Returns the height of the ground around a cell, metres; where none was measured, the mean of
     /// the blocks beside that have one. A goal lies at the edge of the measured ground, and its own
     /// block often has no height: taken for level, it would draw the robot up a slope.
@@ -143,15 +139,13 @@ impl<const TILES: usize> HeightLevels<TILES> {
         let stored = match tiles.entry(cell.x.div_euclid(TILE_SIDE), cell.y.div_euclid(TILE_SIDE)) {
             Entry::Untouched => return None,
             Entry::Page(page) => *self.blocks.get(page)?.get(place(cell))?,
-            Entry::Half(half) => *self.blocks.get(half / 2)?.get(half % 2)?,
-            Entry::AllFree(kept) => kept,
+            Entry::Coded(unit) => tiles.kept(unit),
         };
         (stored != NONE).then(|| f32::from(stored) / PER_METRE)
     }
 }
 
-/// A compact tile keeps the mean of its heights in one of the page's first two blocks, by its half
-/// of the page.
+/// A compact tile keeps the mean of its heights.
 impl<const TILES: usize> SideTable for HeightLevels<TILES> {
     fn release_page(&mut self, page: usize) -> i8 {
         let Some(blocks) = self.blocks.get_mut(page) else {
@@ -169,17 +163,6 @@ impl<const TILES: usize> SideTable for HeightLevels<TILES> {
         if let Some(blocks) = self.blocks.get_mut(page) {
             blocks.fill(kept);
         }
-    }
-
-    fn store_half(&mut self, half: usize, kept: i8) {
-        if let Some(stored) = self.half_mut(half) {
-            *stored = kept;
-        }
-    }
-
-    fn release_half(&mut self, half: usize) -> i8 {
-        self.half_mut(half)
-            .map_or(NONE, |stored| core::mem::replace(stored, NONE))
     }
 }
 

@@ -235,6 +235,8 @@ mod tests {
                 tiles.set(Cell { x, y }, class).unwrap();
             }
         }
+        let beyond = Cell { x: 40, y: 40 };
+        assert_eq!(tiles.set(beyond, Class::Free), Err(NoRoom::Pool));
         let mut list = Vec::new();
         let mut scratch = [0; scratch_words(SLOTS)];
         let robot = Cell { x: 10, y: 10 };

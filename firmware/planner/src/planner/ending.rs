@@ -74,7 +74,7 @@ impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
         local_grid.update(tiles, &self.footprint, robot, 1);
         local_grid.free_robot(robot);
         match missing {
-            Some(NoRoom::Pool) => Status::Fault(Fault::MapFull),
+            Some(NoRoom::Pool | NoRoom::Later) => Status::Fault(Fault::MapFull),
             Some(NoRoom::Box) => Status::Fault(Fault::OutOfBox),
             None if self.state.strategy.frontier.is_stuck() => Status::Fault(Fault::Stuck),
             None if room_cells(tiles, local_grid, robot) < BOX_CELLS => {

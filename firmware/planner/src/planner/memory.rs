@@ -37,7 +37,7 @@ use crate::team::peers::{Peer, Peers};
 pub struct Capacity<const TILES: usize, const SLOTS: usize>;
 
 /// The capacity of the image for an STM32F405: 2,048 m² of touched tiles in the pool.
-pub type F405 = Capacity<200, 250>;
+pub type F405 = Capacity<172, 368>;
 
 /// A capacity that a [`Planner`] can have. Only [`Capacity`] implements it.
 pub trait Memory: sealed::Memory {}

@@ -243,6 +243,6 @@ fn say_tile<const TILES: usize, const SLOTS: usize>(
     Some(Body::Tile(TeamTile {
         tile: told(view.tile)?,
         epoch: view.epoch,
-        planes: view.planes.map(|plane| *plane),
+        planes: view.cells(),
     }))
 }

@@ -135,6 +135,9 @@ fn what_the_map_has_no_room_for_counts_nothing() {
         for (x, y) in (-64..0).flat_map(|x| (-64..64).map(move |y| (x, y))) {
             tiles.set(Cell { x, y }, Class::Free).expect("room");
         }
+        // A beam asks for a tile more.
+        let more = tiles.set(Cell { x: 3, y: 3 }, Class::Unknown);
+        assert_eq!(more.is_err(), TILES == 8);
         tiles
     }
     let gain_m2 = |view: View| view.gain_m2();

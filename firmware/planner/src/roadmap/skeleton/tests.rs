@@ -155,6 +155,9 @@ fn frontier_of_a_free_tile<const TILES: usize>() -> usize {
         };
         tiles.set(cell, Class::Free).unwrap();
     }
+    // A beam asks for a tile more.
+    let more = tiles.set(Cell { x: 0, y: 40 }, Class::Unknown);
+    assert_eq!(more.is_err(), TILES == 1);
     let mut skeleton = Skeleton::<24>::new();
     skeleton.reset(Space::KnownFree);
     while !skeleton.advance(&tiles, &Footprint::new(0.05), &mut [0; 24 * 8], 10_000) {}
