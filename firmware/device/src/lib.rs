@@ -33,11 +33,11 @@ pub use session::{Boot, Session};
 ///
 /// At 5 Hz two observations are then missing, and the robot has driven 35 cm at its full 0.7 m/s.
 pub const STALE_MS: u16 = 500;
-/// Number of tiles in the map's pool of the default image: 2048 m². More would take the memory that
-/// is left for localisation.
+/// Number of pages in the map's pool of the default image. With fewer pages than tiles, those far
+/// from the robot are coded, which loses nothing.
 pub const TILES: usize = 172;
-/// Number of tiles that the map of the default image may have, those that need little or no place
-/// in the pool included.
+/// Number of tiles that the map of the default image may have: 3,768 m² with what nobody sees of
+/// them. Pool and tiles together fill the chip's memory.
 pub const SLOTS: usize = 368;
 /// The planner's state in the default image.
 pub type State = fieldline_planner::State<TILES, SLOTS>;

@@ -9,6 +9,7 @@ mod fences;
 mod full;
 mod generated;
 mod known_maps;
+mod larger;
 mod links;
 mod localise;
 mod localise_parts;

@@ -12,12 +12,7 @@
 //! On uneven ground the heights of a tile go with its page, and only their owner, a [`SideTable`],
 //! can keep them. So a write to a compact tile finds no room there.
 //!
-//! Spare pages are a list: the first word of a page is the number of the next one, plus 1. The
-//! pages that codes share are another: their trail, which nothing else uses, has a bit for each
-//! unit in use, and the next one, plus 1.
-//!
-//! Invariant: every page given out is in the directory once, or spare once, or shared and holds a
-//! code, or is the team's sample (`exchange`). A unit is in use if it is part of one code.
+//! Invariant: a tile in the directory has one page or one code ([`pool`](super::pool)).
 //!
 //! Units: pages of 256 bytes, units of 16 bytes.
 
@@ -26,19 +21,16 @@ mod tests;
 
 use crate::geometry::Cell;
 use crate::grid::{TileKey, inside, inside_mut};
+use crate::map::Map;
 use crate::map::code::{Code, Writer, set_version};
+use crate::map::pool::{MOST_SHARED, UNIT_WORDS, UNITS};
 use crate::map::tile::{Plane, Stored};
-use crate::map::tiles::{NO_TRAIL, NoRoom, TILE_ROWS, TILE_SIDE, Tiles};
+use crate::map::tiles::{NoRoom, TILE_ROWS, TILE_SIDE, Tiles};
+use crate::map::traversal::Traversal;
 use crate::map::versions::Version;
 
 /// Flag of the entry of a compact tile; the other bits are the number of its first unit.
-const CODED_FLAG: u16 = 0x8000;
-/// Units of a page.
-const UNITS: usize = 16;
-/// Words of a unit.
-const UNIT_WORDS: usize = 4;
-/// Pages that an entry can tell units of.
-const MOST_SHARED: usize = CODED_FLAG as usize / UNITS;
+pub(super) const CODED_FLAG: u16 = 0x8000;
 /// On uneven ground tiles are compacted with fewer spare pages than this. The window touches nine
 /// tiles at a time, and [`RESERVED_PAGES`] stay spare.
 const LOW_PAGES: usize = 24;
@@ -108,17 +100,9 @@ impl SideTable for () {
     fn restore_page(&mut self, _: usize, _: i8) {}
 }
 
-/// The lists of spare and shared pages, and how far the compaction is.
+/// How far the compaction is.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct FreeList {
-    /// Pages given out so far, in order.
-    pub(super) given: u16,
-    /// Number of spare pages.
-    pages: u16,
-    /// The first spare page, plus 1; 0 if there is none.
-    page: u16,
-    /// The first shared page, plus 1; 0 if there is none.
-    shared: u16,
+pub(super) struct Compacting {
     /// Number of compact tiles.
     compact: u16,
     /// Tiles that this step tried to compact.
@@ -134,13 +118,9 @@ pub(super) struct FreeList {
     is_exhausted: bool,
 }
 
-impl FreeList {
-    /// No page is given out.
-    pub(super) const EMPTY: Self = Self {
-        given: 0,
-        pages: 0,
-        page: 0,
-        shared: 0,
+impl Compacting {
+    /// No tile is compact.
+    pub(super) const NONE: Self = Self {
         compact: 0,
         tries: 0,
         last: None,
@@ -148,11 +128,6 @@ impl FreeList {
         centre: (0, 0),
         is_exhausted: false,
     };
-
-    /// Returns the number of pages in use.
-    pub(super) const fn used(&self) -> usize {
-        (self.given - self.pages) as usize
-    }
 
     /// Begins a step of a robot in a cell.
     pub(super) fn follow(&mut self, robot: Cell) {
@@ -164,20 +139,10 @@ impl FreeList {
     }
 }
 
-/// Returns the bits of some units.
-const fn run(first: usize, units: usize) -> u16 {
-    (((1_u32 << units) - 1) << first) as u16
-}
-
 impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
-    /// Returns the number of pages not in use.
-    fn free_pages(&self) -> usize {
-        self.capacity().saturating_sub(self.free.used())
-    }
-
     /// Returns true if an untouched tile may take a page that is spare.
     fn has_spare_page(&self) -> bool {
-        let kept_back = match self.free.compact {
+        let kept_back = match self.compacting.compact {
             0 => 0,
             _ => RESERVED_PAGES,
         };
@@ -186,7 +151,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
 
     /// Returns true if an untouched tile may take a page.
     pub(super) fn has_page(&self) -> bool {
-        self.has_spare_page() || !(self.is_lent() || self.free.is_exhausted)
+        self.has_spare_page() || !(self.is_lent() || self.compacting.is_exhausted)
     }
 
     /// Takes a page for an untouched tile.
@@ -201,44 +166,6 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             self.make_room(RESERVED_PAGES + 1, &mut ())?;
         }
         self.take_page()
-    }
-
-    /// Takes a spare page; its content is undefined.
-    fn take_page(&mut self) -> Result<usize, NoRoom> {
-        if let Some(page) = self.free.page.checked_sub(1) {
-            let page = usize::from(page);
-            self.free.page = self.words(page).first().map_or(0, |link| *link as u16);
-            self.free.pages -= 1;
-            return Ok(page);
-        }
-        let page = usize::from(self.free.given);
-        if page >= self.capacity() {
-            return Err(NoRoom::Pool);
-        }
-        self.free.given += 1;
-        Ok(page)
-    }
-
-    /// Returns the words of a page that was taken for another use than a tile.
-    pub(super) fn words_mut(&mut self, page: usize) -> &mut [u32] {
-        let page = inside_mut(&mut self.pool, page);
-        page.map_or(&mut [], |cells| cells.as_flattened_mut())
-    }
-
-    /// Returns the words of a page that was taken for another use than a tile.
-    pub(super) fn words(&self, page: usize) -> &[u32] {
-        inside(&self.pool, page).map_or(&[], |cells| cells.as_flattened())
-    }
-
-    /// Gives a page back.
-    pub(super) fn return_page(&mut self, page: usize) {
-        let next = u32::from(self.free.page);
-        if let Some(link) = self.words_mut(page).first_mut() {
-            *link = next;
-        }
-        self.free.page = page as u16 + 1;
-        self.free.pages += 1;
-        self.free.is_exhausted = false;
     }
 
     /// Returns the code that begins at a unit.
@@ -259,64 +186,6 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         set_version(code.unwrap_or_default(), version);
     }
 
-    /// Returns the units in use of a shared page, and the next shared page, plus 1.
-    fn share(&self, page: usize) -> [u16; 2] {
-        let trail = inside(&self.trail, page).unwrap_or(&NO_TRAIL);
-        let [used, next, ..] = *trail;
-        [used, next]
-    }
-
-    fn set_share(&mut self, page: usize, share: [u16; 2]) {
-        if let Some([used, next, ..]) = inside_mut(&mut self.trail, page) {
-            [*used, *next] = share;
-        }
-    }
-
-    /// Returns a run of units that are not in use, of a page that is shared or is from now on.
-    fn take_units(&mut self, units: usize) -> Option<usize> {
-        let mut at = self.free.shared;
-        while let Some(page) = at.checked_sub(1).map(usize::from) {
-            let [used, next] = self.share(page);
-            let fits = |first: &usize| used & run(*first, units) == 0;
-            if let Some(first) = (0..=UNITS - units).find(fits) {
-                self.set_share(page, [used | run(first, units), next]);
-                return Some(UNITS * page + first);
-            }
-            at = next;
-        }
-        let page = self.take_page().ok()?;
-        if page >= MOST_SHARED {
-            self.return_page(page);
-            return None;
-        }
-        self.set_share(page, [run(0, units), self.free.shared]);
-        self.free.shared = page as u16 + 1;
-        Some(UNITS * page)
-    }
-
-    /// Gives units back. A page without a unit in use is spare.
-    fn return_units(&mut self, unit: usize, units: usize) {
-        let page = unit / UNITS;
-        let [used, next] = self.share(page);
-        let left = used & !run(unit % UNITS, units);
-        self.set_share(page, [left, next]);
-        if left != 0 {
-            return;
-        }
-        let mut at = self.free.shared;
-        if usize::from(at) == page + 1 {
-            self.free.shared = next;
-        }
-        while let Some(before) = at.checked_sub(1).map(usize::from) {
-            let [used, after] = self.share(before);
-            if usize::from(after) == page + 1 {
-                self.set_share(before, [used, next]);
-            }
-            at = after;
-        }
-        self.return_page(page);
-    }
-
     /// Compacts tiles, the farthest from the robot first, until so many pages are spare.
     ///
     /// # Errors
@@ -324,17 +193,17 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// enough of them.
     fn make_room(&mut self, pages: usize, side_table: &mut impl SideTable) -> Result<(), NoRoom> {
         while self.free_pages() < pages {
-            if self.free.tries >= MOST_TRIES {
+            if self.compacting.tries >= MOST_TRIES {
                 return Err(NoRoom::Later);
             }
-            self.free.tries += 1;
+            self.compacting.tries += 1;
             if let Some((place, distance)) = self.farthest() {
-                self.free.last = Some(distance);
-                self.free.gained |= self.compact_tile(place, side_table);
-            } else if self.free.gained {
-                (self.free.last, self.free.gained) = (None, false);
+                self.compacting.last = Some(distance);
+                self.compacting.gained |= self.compact_tile(place, side_table);
+            } else if self.compacting.gained {
+                (self.compacting.last, self.compacting.gained) = (None, false);
             } else {
-                self.free.is_exhausted = true;
+                self.compacting.is_exhausted = true;
                 return Err(NoRoom::Pool);
             }
         }
@@ -345,14 +214,14 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// and its distance with its key.
     #[inline(never)]
     fn farthest(&self) -> Option<(usize, (i32, TileKey))> {
-        let (column, row) = self.free.centre;
+        let (column, row) = self.compacting.centre;
         let mut best = None;
         for (place, &key) in self.directory.keys().iter().enumerate() {
             let (x, y) = self.directory.tile(key);
             let (dx, dy) = ((x - column).abs(), (y - row).abs());
             let distance = (dx * dx + dy * dy, key);
             let is_next = dx.max(dy) > NEAR
-                && self.free.last.is_none_or(|last| distance < last)
+                && self.compacting.last.is_none_or(|last| distance < last)
                 && best.is_none_or(|(_, most)| distance > most);
             if is_next && matches!(self.entry_at(place), Entry::Page(_)) {
                 best = Some((place, distance));
@@ -367,6 +236,9 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         let Entry::Page(page) = self.entry_at(place) else {
             return false;
         };
+        if page >= MOST_SHARED {
+            return false;
+        }
         let Some((cells, trail)) = inside(&self.pool, page).zip(inside(&self.trail, page)) else {
             return false;
         };
@@ -376,13 +248,13 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         };
         code.keep(side_table.release_page(page));
         self.return_page(page);
-        // The page itself is spare, so there are units.
+        // The page itself is the next spare one, so there are units.
         let units = code.words().len().div_ceil(UNIT_WORDS);
         let unit = self.take_units(units).unwrap_or(UNITS * page);
         let to = self.words_mut(unit / UNITS).iter_mut();
         let to = to.skip(unit % UNITS * UNIT_WORDS);
         to.zip(code.words()).for_each(|(to, word)| *to = *word);
-        self.free.compact += 1;
+        self.compacting.compact += 1;
         self.enter(place, Entry::Coded(unit));
         true
     }
@@ -429,7 +301,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
         }
         self.versions.put(page, version);
         side_table.restore_page(page, kept);
-        self.free.compact -= 1;
+        self.compacting.compact -= 1;
         self.enter(place, Entry::Page(page));
         Ok(())
     }
@@ -454,11 +326,12 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             Entry::Coded(unit) => {
                 let units = self.code(unit).length().div_ceil(UNIT_WORDS);
                 self.return_units(unit, units);
-                self.free.compact -= 1;
+                self.compacting.compact -= 1;
                 None
             }
         };
         self.directory.remove(tile);
+        self.compacting.is_exhausted = false;
         page
     }
 
@@ -482,7 +355,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             // What is not compacted in this step is in the next one.
             let _ = self.make_room(LOW_PAGES, side_table);
         }
-        if self.free.compact == 0 {
+        if self.compacting.compact == 0 {
             return;
         }
         let is_near = |tile: i32, from: i32| {
@@ -496,5 +369,40 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
                 let _ = self.expand_tile(place, side_table);
             }
         }
+    }
+}
+
+impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
+    /// Crosses a compact tile without evidence in which the beam frees nothing, and leaves it as it
+    /// is. Returns true if the beam continues; `None` if the tile is another one.
+    #[inline]
+    pub(super) fn cross_compact(&self, traversal: &mut Traversal, hit: bool) -> Option<bool> {
+        let (x, y) = traversal.tile();
+        let Entry::Coded(unit) = self.tiles.entry(x, y) else {
+            return None;
+        };
+        // The window is larger than a tile, so one that it meets has a corner in it.
+        let (x, y) = (x * TILE_SIDE, y * TILE_SIDE);
+        let last = TILE_SIDE - 1;
+        let corners = [(x, y), (x + last, y), (x, y + last), (x + last, y + last)];
+        if corners
+            .map(|(x, y)| Cell { x, y })
+            .iter()
+            .any(|&cell| self.evidence.covers(cell))
+        {
+            return None;
+        }
+        let code = self.tiles.code(unit);
+        let (mut ahead, mut frees) = (*traversal, false);
+        let goes_on = ahead.cross_tile(|row, bit, _| {
+            let [low, high] = code.class_bits(row, bit.trailing_zeros());
+            frees = low | high == 0;
+            !frees && (high == 0 || hit)
+        });
+        if frees {
+            return None;
+        }
+        *traversal = ahead;
+        Some(goes_on)
     }
 }

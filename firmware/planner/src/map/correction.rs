@@ -176,7 +176,7 @@ mod tests {
     #[test]
     fn a_tile_without_a_known_cell_gives_its_page_back() {
         let mut map = plan();
-        map.tiles.free.follow(Cell { x: 64, y: 230 });
+        map.tiles.compacting.follow(Cell { x: 64, y: 230 });
         for k in 0..4 {
             map.replace((k, 7), &row_of(Class::Obstacle), false);
         }

@@ -25,9 +25,8 @@ use crate::grid::Class;
 use crate::input::{INVALID_MM, Input, NO_RETURN_MM, informative_range_mm};
 use crate::map::Map;
 use crate::map::arrivals::came;
-use crate::map::compaction::Entry;
 use crate::map::evidence::Evidence;
-use crate::map::tiles::{NoRoom, TILE_SIDE, TileMut};
+use crate::map::tiles::{NoRoom, TileMut};
 use crate::map::traversal::Traversal;
 use crate::math;
 use crate::robot::LaserMount;
@@ -267,39 +266,6 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
                 }
             };
         }
-    }
-
-    /// Crosses a compact tile without evidence in which the beam frees nothing, and leaves it as it
-    /// is. Returns true if the beam continues; `None` if the tile is another one.
-    #[inline]
-    fn cross_compact(&self, traversal: &mut Traversal, hit: bool) -> Option<bool> {
-        let (x, y) = traversal.tile();
-        let Entry::Coded(unit) = self.tiles.entry(x, y) else {
-            return None;
-        };
-        // The window is larger than a tile, so one that it meets has a corner in it.
-        let (x, y) = (x * TILE_SIDE, y * TILE_SIDE);
-        let last = TILE_SIDE - 1;
-        let corners = [(x, y), (x + last, y), (x, y + last), (x + last, y + last)];
-        if corners
-            .map(|(x, y)| Cell { x, y })
-            .iter()
-            .any(|&cell| self.evidence.covers(cell))
-        {
-            return None;
-        }
-        let code = self.tiles.code(unit);
-        let (mut ahead, mut frees) = (*traversal, false);
-        let goes_on = ahead.cross_tile(|row, bit, _| {
-            let [low, high] = code.class_bits(row, bit.trailing_zeros());
-            frees = low | high == 0;
-            !frees && (high == 0 || hit)
-        });
-        if frees {
-            return None;
-        }
-        *traversal = ahead;
-        Some(goes_on)
     }
 
     fn hit(&mut self, tuning: &MapTuning, cell: Cell) {

@@ -3,7 +3,7 @@
 //! | file | holds |
 //! | --- | --- |
 //! | [`tiles`], `tile` | the class of every cell, for the whole run |
-//! | `compaction`, `code` | shorter storage for tiles far from the robot |
+//! | `compaction`, `code`, `pool` | shorter storage for tiles far from the robot |
 //! | `versions`, [`exchange`], `join` | for a team: tiles with versions, and their joins |
 //! | `rows` | rows of 32 and 64 cells, for all planning |
 //! | `correction` | tiles that replace others |
@@ -30,6 +30,7 @@ pub(crate) mod join;
 pub(crate) mod landmarks;
 pub(crate) mod neighbourhood;
 pub mod obstacle_points;
+mod pool;
 pub(crate) mod rows;
 #[cfg(feature = "internals")]
 mod standing;
@@ -116,7 +117,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
     pub fn observe(&mut self, config: &Config, input: &Input<'_>) {
         let tuning = &config.tuning.map;
         let robot = input.pose.point();
-        self.tiles.free.follow(robot.cell());
+        self.tiles.compacting.follow(robot.cell());
         if let Some(ground) = &config.ground {
             self.free_footprint(robot, tuning.stand_radius_m);
             self.record_visit(robot.cell());

@@ -12,8 +12,9 @@
 use crate::fence::Fence;
 use crate::geometry::Cell;
 use crate::grid::{Class, Row, TileKey, TileMap, inside_mut, masked_mut};
-use crate::map::compaction::{Entry, FreeList, ZEROS};
+use crate::map::compaction::{Compacting, Entry, ZEROS};
 use crate::map::elevation_layer::MARK_TILES;
+use crate::map::pool::FreeList;
 use crate::map::rows::RowReader;
 pub(super) use crate::map::tile::{Cells, Plane, Stored, TileMut, Visited};
 use crate::map::versions::Versions;
@@ -45,6 +46,7 @@ pub struct Tiles<const TILES: usize, const SLOTS: usize> {
     pub(super) trail: [Visited; TILES],
     pub(super) versions: Versions<TILES>,
     pub(super) free: FreeList,
+    pub(super) compacting: Compacting,
     /// Pages at the pool's end that are lent to the elevation window.
     lent: u16,
     /// Number of changes of any cell; wraps.
@@ -63,6 +65,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
             trail: [NO_TRAIL; TILES],
             versions: Versions::new(),
             free: FreeList::EMPTY,
+            compacting: Compacting::NONE,
             lent: 0,
             edits: 0,
             fence: Fence::new(),
@@ -72,7 +75,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// Clears the map.
     pub fn reset(&mut self) {
         self.directory.clear();
-        self.free = FreeList::EMPTY;
+        (self.free, self.compacting) = (FreeList::EMPTY, Compacting::NONE);
         self.lent = 0;
         self.edits = self.edits.wrapping_add(1);
     }

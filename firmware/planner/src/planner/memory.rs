@@ -36,7 +36,7 @@ use crate::team::peers::{Peer, Peers};
 #[derive(Clone, Copy, Debug)]
 pub struct Capacity<const TILES: usize, const SLOTS: usize>;
 
-/// The capacity of the image for an STM32F405: 2,048 m² of touched tiles in the pool.
+/// The capacity of the image for an STM32F405: 368 touched tiles of 10 m².
 pub type F405 = Capacity<172, 368>;
 
 /// A capacity that a [`Planner`] can have. Only [`Capacity`] implements it.

@@ -6,11 +6,12 @@ use std::boxed::Box;
 use std::collections::{BTreeMap, BTreeSet};
 use std::vec::Vec;
 
-use super::{Entry, LOW_PAGES, NoRoom, RESERVED_PAGES, SideTable, Tiles, UNIT_WORDS, UNITS, run};
+use super::{Entry, LOW_PAGES, NoRoom, RESERVED_PAGES, SideTable, Tiles};
 use crate::geometry::Cell;
 use crate::grid::Row;
 use crate::map::Class;
 use crate::map::neighbourhood::Neighbourhood;
+use crate::map::pool::{UNIT_WORDS, UNITS, run};
 
 const TILES: usize = 60;
 const FAR: Cell = Cell { x: 0, y: 3_000 };
@@ -110,7 +111,7 @@ fn assert_whole<const N: usize>(tiles: &Tiles<N, 400>) {
 fn free_ground_takes_two_units_a_tile() {
     let mut tiles = small();
     for tile in 0..300 {
-        tiles.free.follow(corner(tile));
+        tiles.compacting.follow(corner(tile));
         free(&mut tiles, tile).unwrap();
     }
     assert_whole(&tiles);
@@ -130,7 +131,7 @@ fn rooms_take_less_than_half_a_page() {
     let mut seed = 9;
     let mut fits = 0_i32;
     for tile in 0..400 {
-        tiles.free.follow(corner(tile));
+        tiles.compacting.follow(corner(tile));
         let all = cells(tile).try_for_each(|cell| {
             let (x, y) = (cell.x % 96, cell.y % 64);
             let noise = random(&mut seed, 2);
@@ -154,7 +155,7 @@ fn rooms_take_less_than_half_a_page() {
     assert_eq!(tiles.room(19, 19), Err(NoRoom::Pool));
     // What is there can still be written.
     for tile in [0, 1, fits / 2] {
-        tiles.free.follow(corner(tile));
+        tiles.compacting.follow(corner(tile));
         assert_eq!(tiles.set(corner(tile), Class::Negative), Ok(()), "{tile}");
     }
     assert_whole(&tiles);
@@ -167,12 +168,12 @@ fn noise_fills_the_pool() {
     let mut seed = 4;
     let mut written = 0;
     'tiles: for tile in 0..100 {
-        tiles.free.follow(corner(tile));
+        tiles.compacting.follow(corner(tile));
         for cell in cells(tile) {
             let class = Class::from_bits(random(&mut seed, 2) as u32, random(&mut seed, 2) as u32);
             match tiles.set(cell, class) {
                 Ok(()) => {}
-                Err(NoRoom::Later) => tiles.free.follow(corner(tile)),
+                Err(NoRoom::Later) => tiles.compacting.follow(corner(tile)),
                 Err(why) => {
                     assert_eq!(why, NoRoom::Pool);
                     break 'tiles;
@@ -199,7 +200,7 @@ fn a_small_pool_holds_what_a_large_one_holds() {
     let mut compact = 0;
     for round in 0..6_000 {
         let tile = random(&mut seed, 110);
-        tiles.free.follow(corner(tile));
+        tiles.compacting.follow(corner(tile));
         for _ in 0..30 {
             let cell = cells(tile).nth(random(&mut seed, 1024) as usize).unwrap();
             let class = match random(&mut seed, 60) {
@@ -225,7 +226,7 @@ fn a_small_pool_holds_what_a_large_one_holds() {
             large.mark_visited(cell);
             assert_eq!(tiles.class(cell), class);
         }
-        compact = compact.max(tiles.free.compact);
+        compact = compact.max(tiles.compacting.compact);
         if round % 500 == 0 {
             assert_whole(&tiles);
         }
@@ -269,7 +270,7 @@ fn on_uneven_ground_a_compact_tile_is_written_once_the_window_is_there() {
     tiles.mark_visited(corner(19));
     let trail = |tiles: &Small| tiles.row(corner(19).x, corner(19).y).visited() & 0xffff_ffff;
     let beside = trail(&tiles);
-    tiles.free.follow(FAR);
+    tiles.compacting.follow(FAR);
     tiles.compact(FAR, 64, &mut ());
     assert!(tiles.free_pages() >= LOW_PAGES);
     let (wall, edits) = (corner(19), tiles.edits());
@@ -288,7 +289,7 @@ fn on_uneven_ground_a_compact_tile_is_written_once_the_window_is_there() {
 fn pages_are_kept_back_for_compact_tiles() {
     let mut tiles = uneven();
     (0..30).for_each(|tile| free(&mut tiles, tile).unwrap());
-    tiles.free.follow(FAR);
+    tiles.compacting.follow(FAR);
     tiles.compact(FAR, 64, &mut ());
     let spare = tiles.free_pages();
     let news = (100..160).filter(|&tile| tiles.set(corner(tile), Class::Obstacle).is_ok());
@@ -309,7 +310,7 @@ fn a_side_table_keeps_its_bytes() {
     let (mut compact, mut written) = (0, 0);
     for _ in 0..4_000 {
         let tile = random(&mut seed, 60);
-        tiles.free.follow(corner(tile));
+        tiles.compacting.follow(corner(tile));
         tiles.compact(corner(tile), 1, &mut guest);
         for _ in 0..40 {
             let cell = cells(tile).nth(random(&mut seed, 1024) as usize).unwrap();
@@ -328,7 +329,7 @@ fn a_side_table_keeps_its_bytes() {
                 }
             }
         }
-        compact = compact.max(tiles.free.compact);
+        compact = compact.max(tiles.compacting.compact);
     }
     assert_whole(&tiles);
     assert!(compact > 20 && written > 60_000, "{compact} {written}");
