@@ -71,15 +71,9 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
 
     /// Returns the number of cells that were measured.
     pub(crate) fn known_cells(&self) -> u32 {
-        let mut known = 0;
-        for &key in self.tiles.keys() {
-            let (x, y) = self.tiles.directory.tile(key);
-            let mut reader = self.tiles.measured(x * TILE_SIDE);
-            for y in y * TILE_SIDE..(y + 1) * TILE_SIDE {
-                known += (!reader.row(y).unknown() as u32).count_ones();
-            }
-        }
-        known
+        let places = 0..self.tiles.keys().len();
+        let stored = places.filter_map(|place| self.tiles.stored(self.tiles.entry_at(place)));
+        stored.map(|stored| stored.known()).sum()
     }
 
     /// Returns a tile's cells as [`Tiles::packed`](crate::map::Tiles::packed) does. On flat ground

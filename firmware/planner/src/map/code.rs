@@ -249,6 +249,17 @@ impl<'a> Code<'a> {
         [word >> bit & 1, word >> (16 + bit) & 1]
     }
 
+    /// Returns the number of cells that were measured.
+    pub(super) fn known(self) -> u32 {
+        let [low, high] = CLASSES;
+        let whole = [0, 1].map(|k| (self.word(low + k) | self.word(high + k)).count_ones());
+        let mixed = (HEAD..self.trail_at()).map(|place| {
+            let word = self.word(place);
+            ((word | word >> 16) & 0xffff).count_ones()
+        });
+        whole.into_iter().sum::<u32>() * (BLOCK * BLOCK) as u32 + mixed.sum::<u32>()
+    }
+
     /// Returns a row of the trail.
     pub(super) fn trail_row(self, row: usize) -> u16 {
         let rows = self.word(0) >> 16;

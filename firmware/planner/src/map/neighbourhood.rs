@@ -51,9 +51,8 @@ impl<'a, const TILES: usize, const SLOTS: usize> Neighbourhood<'a, TILES, SLOTS>
     /// Returns the class of a cell, as [`Tiles::class`].
     pub(crate) fn class(&mut self, cell: Cell) -> Class {
         let tile = self.tile((cell.x >> 5, cell.y >> 5));
-        let [low, high] = [LOW, HIGH].map(|plane| line(tile, plane, cell.y & LAST));
-        let bit = cell.x & LAST;
-        Class::from_bits(low >> bit & 1, high >> bit & 1)
+        let (row, column) = ((cell.y & LAST) as usize, (cell.x & LAST) as u32);
+        tile.map_or(Class::Unknown, |stored| stored.class(row, column))
     }
 
     /// Returns true if at most one of a coarse cell's four map cells was never measured and is not

@@ -56,6 +56,18 @@ impl Stored<'_> {
         self.with_planes(|[low, high]| low.iter().zip(high).any(|(low, high)| low & high != 0))
     }
 
+    /// Returns the number of cells that were measured.
+    pub(super) fn known(&self) -> u32 {
+        match self {
+            Self::Page { cells, .. } => {
+                let [low, high] = cells;
+                let rows = low.iter().zip(high);
+                rows.map(|(low, high)| (low | high).count_ones()).sum()
+            }
+            Self::Coded(code) => code.known(),
+        }
+    }
+
     /// Returns the cells.
     pub(super) fn cells(&self) -> Cells {
         match self {

@@ -64,6 +64,12 @@ fn a_code_gives_back_what_was_written() {
         lengths.push(code.length());
         assert_eq!((code.cells(), code.trail()), (cells, trail));
         assert_eq!((code.version(), code.kept()), (version, kept));
+        let [low, high] = &cells;
+        let known = low
+            .iter()
+            .zip(high)
+            .map(|(low, high)| (low | high).count_ones());
+        assert_eq!(code.known(), known.sum::<u32>());
         for row in 0..32 {
             assert_eq!(code.row(row), cells.map(|plane| plane[row]));
             for column in 0..32 {
