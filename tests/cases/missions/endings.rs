@@ -8,7 +8,8 @@ use fieldline_tests::worlds;
 use host_sim::baseline::{Bvp, Session};
 use host_sim::link::Link;
 use host_sim::link::direct::Direct;
-use host_sim::link::loopback::loopback;
+use host_sim::link::endpoint::{Endpoint, RetryPolicy};
+use host_sim::link::loopback::{LocalDevice, loopback};
 use host_sim::robot::{LaserNoise, LaserScanner, Pose, Source, laser};
 use host_sim::sim::{SimConfig, Simulator};
 use host_sim::trial::Step;
@@ -20,17 +21,17 @@ const CELL_M: f64 = 0.2;
 /// Side of a tile of the map, metres.
 const TILE_M: f64 = 3.2;
 
-/// Draws a hall of 80 × 80 m, which is more than the map can hold, with a pillar every 3.2 m.
-fn pillars() -> World {
+/// Draws a square hall with so many cells at its side, and a pillar every 3.2 m.
+fn pillars(side: usize) -> World {
     let row = |y: usize| {
         let cell = |x: usize| {
-            let rim = [x, y].iter().any(|&at| !(2..398).contains(&at));
+            let rim = [x, y].iter().any(|&at| !(2..side - 2).contains(&at));
             let pillar = x % 16 < 2 && y % 16 < 2;
             if rim || pillar { '#' } else { '.' }
         };
-        (0..400).map(cell).collect::<String>()
+        (0..side).map(cell).collect::<String>()
     };
-    let rows: Vec<String> = (0..400).map(row).collect();
+    let rows: Vec<String> = (0..side).map(row).collect();
     let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
     let start = Start {
         x_m: 5.0,
@@ -44,7 +45,8 @@ fn pillars() -> World {
 #[test]
 fn a_world_larger_than_the_map_is_a_fault_and_its_exits_are_listed() {
     let mission = Mission::default();
-    let run = explore(&mission, &pillars(), &mut Direct::new(), &mut ());
+    // 80 m: more than the map can hold.
+    let run = explore(&mission, &pillars(400), &mut Direct::new(), &mut ());
     let report = run.expect("the start is free").0;
     let outcome = &report.outcome;
     assert_eq!(
@@ -67,7 +69,8 @@ fn a_world_larger_than_the_map_is_a_fault_and_its_exits_are_listed() {
 /// pose.
 #[test]
 fn a_robot_whose_map_is_full_does_not_drive_on_beyond_it() {
-    let world = pillars();
+    // 54 m, and a map of 250 tiles.
+    let world = pillars(270);
     for seed in 0..2 {
         let mission = Mission {
             seed,
@@ -75,7 +78,9 @@ fn a_robot_whose_map_is_full_does_not_drive_on_beyond_it() {
             localise: true,
             ..Mission::default()
         };
-        let run = explore(&mission, &world, &mut Direct::new(), &mut ());
+        let device = LocalDevice::<200, 250>::sized();
+        let mut link = Endpoint::new(device, RetryPolicy::VIRTUAL, 1);
+        let run = explore(&mission, &world, &mut link, &mut ());
         let (report, record) = run.expect("the start is free");
         assert_eq!(report.outcome.reason, "map-full");
         let error_m = report.localization.max_error_m.unwrap_or(f64::MAX);
