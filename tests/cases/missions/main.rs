@@ -21,5 +21,6 @@ mod replay;
 mod robots;
 mod space;
 mod starts;
+mod turning;
 mod whole;
 mod wiring;
