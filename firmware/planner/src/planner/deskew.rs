@@ -62,6 +62,7 @@ pub(super) struct Moved {
 
 impl Moved {
     /// Returns the motion between two reports; `None` if nothing moved, or if it cannot be told.
+    #[inline(never)]
     pub(super) fn between(
         config: &Config,
         (then_ms, then): &Report,
@@ -160,7 +161,9 @@ impl<'a> Turn<'a> {
             let after = after.filter(|_| is_joined);
             if let Some(end) = &here {
                 if let Some(after) = &after {
-                    self.join(scan, end, after);
+                    for round in self.rounds() {
+                        self.join(scan, (end, after), round);
+                    }
                 }
                 self.put_alone(scan, end, [before, after]);
             }
@@ -233,22 +236,21 @@ impl<'a> Turn<'a> {
                 || is_flat([Some(one), Some(other), after.as_ref()]))
     }
 
-    /// Writes the chord of a stretch to every bearing between its ends.
-    fn join(&self, scan: &mut [u16], one: &End, other: &End) {
+    /// Writes the chord of a stretch to every bearing between its ends, so much further round.
+    #[inline(never)]
+    fn join(&self, scan: &mut [u16], (one, other): (&End, &End), round: f32) {
         let gap = other.at - one.at;
         let (first, last) = (one.at.min(other.at), one.at.max(other.at));
-        for round in [0.0, self.round, -self.round] {
-            // The least whole number that is not below the first.
-            let from = -math::floor(-(first + round));
-            let to = math::floor(last + round);
-            for number in from.max(0)..=to.min(scan.len() as i32 - 1) {
-                let share = if gap == 0.0 {
-                    0.0
-                } else {
-                    (number as f32 - round - one.at) / gap
-                };
-                self.put(scan, number, self.chord(one, other, share));
-            }
+        // The least whole number that is not below the first.
+        let from = -math::floor(-(first + round));
+        let to = math::floor(last + round);
+        for number in from.max(0)..=to.min(scan.len() as i32 - 1) {
+            let share = if gap == 0.0 {
+                0.0
+            } else {
+                (number as f32 - round - one.at) / gap
+            };
+            put(scan, number, self.chord(one, other, share));
         }
     }
 
@@ -269,19 +271,25 @@ impl<'a> Turn<'a> {
         if stretches.into_iter().flatten().any(has_range) {
             return;
         }
-        for round in [0.0, self.round, -self.round] {
-            self.put(scan, math::floor(end.at + round + 0.5), end.range_mm);
+        for round in self.rounds() {
+            put(scan, math::floor(end.at + round + 0.5), end.range_mm);
         }
     }
 
-    /// Writes a range to a bearing, if it is less than what is there.
-    fn put(&self, scan: &mut [u16], number: i32, range_mm: u16) {
-        let place = usize::try_from(number).ok().and_then(|it| scan.get_mut(it));
-        if let Some(place) = place
-            && (*place == INVALID_MM || range_mm < *place)
-        {
-            *place = range_mm;
-        }
+    /// Returns the shifts under which a bearing is the same, steps.
+    const fn rounds(&self) -> [f32; 3] {
+        [0.0, self.round, -self.round]
+    }
+}
+
+/// Writes a range to a bearing, if it is less than what is there.
+#[inline(never)]
+fn put(scan: &mut [u16], number: i32, range_mm: u16) {
+    let place = usize::try_from(number).ok().and_then(|it| scan.get_mut(it));
+    if let Some(place) = place
+        && (*place == INVALID_MM || range_mm < *place)
+    {
+        *place = range_mm;
     }
 }
 
@@ -293,6 +301,7 @@ fn chord_m(one: &End, other: &End, share: f32) -> f32 {
 }
 
 /// Returns true if three neighbouring ends lie on one surface.
+#[inline(never)]
 fn is_flat(one: &End, middle: &End, other: &End) -> bool {
     let share = (middle.at - one.at) / (other.at - one.at);
     let is_between = share > 0.0 && share < 1.0;

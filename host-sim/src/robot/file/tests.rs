@@ -104,10 +104,9 @@ fn a_lidar_may_take_a_turn() {
     let text = GOOD.replace("range: 10", turning);
     let lidar = &of(&text).expect("good").lidars[0];
     assert_eq!((lidar.turn_time_s, lidar.newest_first), (0.1, true));
-    let down = "\
-  - {x: 0, y: 0, z: 0.3, pitch: 20, field: 180, beams: 181, range: 8, turn_time: 0.1}
-odometry";
-    let error = of(&GOOD.replace("odometry", down)).expect_err("it looks down");
+    let place = "  - {x: 0, y: 0, z: 0.3, pitch: 20, field: 180, beams: 181, range: 8";
+    let down = format!("{place}, turn_time: 0.1}}\nodometry");
+    let error = of(&GOOD.replace("odometry", &down)).expect_err("it looks down");
     assert!(error.to_string().contains("level lasers only"), "{error}");
 }
 
