@@ -11,6 +11,7 @@ mod config;
 mod fleet;
 mod motion;
 mod readings;
+mod trail;
 
 use fieldline_protocol::message::{INVALID_MM, Observation, Scan, Twist};
 
@@ -23,6 +24,7 @@ use crate::robot::{
 use crate::world::{Ray, World, WorldError};
 pub use config::SimConfig;
 pub use fleet::{Fleet, FleetError};
+use trail::Trail;
 
 /// Noise of ranges and of faults, of the first lidar and of the second.
 const SOURCES: [[Source; 2]; 2] = [
@@ -50,6 +52,8 @@ pub struct Simulator<'w> {
     /// The true pose at the start.
     first: Pose,
     pose: Pose,
+    /// Where the robot was before, and when, for lidars that turn meanwhile.
+    trail: Trail,
     drive: Drive,
     odometry: Odometry,
     /// Odometry's pose where it began anew.
@@ -103,6 +107,7 @@ impl<'w> Simulator<'w> {
             start_z_m: pose.z_m,
             first: pose,
             pose,
+            trail: Trail::of(&lasers),
             drive: Drive::new(config.limits),
             odometry: Odometry::new(config.odometry, pose, config.seed),
             restart: None,
@@ -148,7 +153,9 @@ impl<'w> Simulator<'w> {
                     .cast(world, ray, robot_m.unwrap_or(limit_m))
                     .or(robot_m)
             };
-            let mut scan = self.lasers[laser].scan_among(world, moving, &self.pose);
+            let (trail, now) = (&self.trail, (self.time_ms, &self.pose));
+            let pose = |age_s| trail.pose(now, age_s);
+            let mut scan = self.lasers[laser].scan_among(world, moving, pose);
             self.disturb(&mut scan);
             // The vector holds two scans, and there are at most two lasers.
             let _ = observation.scans.push(scan);
@@ -217,6 +224,7 @@ impl<'w> Simulator<'w> {
             self.drive.command(Velocity::default());
         }
         let seconds = f64::from(step_ms) / 1000.0;
+        self.trail.note(self.time_ms, &self.pose);
         let robot = (&self.config.footprint, &self.pose);
         self.people.walk(self.world, robot, seconds);
         let forwards = self.drive.velocity().linear_mps >= 0.0;

@@ -18,6 +18,9 @@ impl fmt::Display for Parameter {
                 "the first laser must be level, and the second must look down by less than 90°"
             }
             Self::Mount => "a laser must be above the ground, at most 2 m from the robot's centre",
+            Self::TurnTime => {
+                "the turn time of a laser must be at most 500 ms, and 0 if it looks down"
+            }
             Self::Hull => {
                 "the robot's hull must be 1 to 4000 mm long and wide and at most 2000 mm high"
             }

@@ -94,6 +94,8 @@ fn largest_laser() -> Laser {
         bearing_step: FARTHEST,
         beams: u16::MAX,
         range_limit_mm: u16::MAX,
+        turn_time_ms: u16::MAX,
+        newest_first: true,
     }
 }
 

@@ -103,6 +103,8 @@ fn laser(laser: &wire::Laser) -> LaserMount {
         bearing_step_rad: float(laser.bearing_step),
         beams: laser.beams,
         range_limit_mm: laser.range_limit_mm,
+        turn_time_ms: laser.turn_time_ms,
+        newest_first: laser.newest_first,
     }
 }
 
@@ -247,6 +249,7 @@ const fn wire_parameter(parameter: Parameter) -> wire::Parameter {
         }
         Parameter::Pitch => wire::Parameter::Pitch,
         Parameter::Mount | Parameter::LaserHeight => wire::Parameter::Mount,
+        Parameter::TurnTime => wire::Parameter::TurnTime,
         Parameter::HalfLength | Parameter::HalfWidth | Parameter::Height => wire::Parameter::Hull,
         Parameter::Radius => wire::Parameter::Radius,
         Parameter::MaxLinear => wire::Parameter::MaxLinear,

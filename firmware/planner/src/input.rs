@@ -38,7 +38,7 @@ const SAME_THING_MM: u16 = 250;
 pub struct Input<'a> {
     /// The host's clock, milliseconds. It may begin anywhere, and it may wrap.
     pub time_ms: u32,
-    /// Odometry.
+    /// Odometry, at the instant of the newest beam.
     pub pose: Pose,
     /// Measured velocity.
     pub velocity: Twist,
@@ -131,7 +131,12 @@ pub(crate) fn has_company(ranges_mm: &[u16], number: usize) -> bool {
     };
     let is_near = |beside: usize| {
         let beside = ranges_mm.get(beside);
-        beside.is_some_and(|beside| beside.abs_diff(here) < SAME_THING_MM)
+        beside.is_some_and(|&beside| is_same_thing(beside, here))
     };
     is_near(number.wrapping_sub(1)) || is_near(number + 1)
+}
+
+/// Returns true if two adjacent beams of these ranges hit the same thing.
+pub(crate) const fn is_same_thing(one_mm: u16, other_mm: u16) -> bool {
+    one_mm.abs_diff(other_mm) < SAME_THING_MM
 }

@@ -1,7 +1,7 @@
 //! One step of the exploration, the papers' algorithm box \[Jorge15, Algorithm 1\]:
 //!
 //! ```text
-//! sense:   scans + odometry → pose, map, ground model
+//! sense:   scans + odometry → pose, map, ground model; first the beams to one instant
 //! line 3:  update the Voronoi cells               skeleton, in instalments
 //! line 4:  move the robot to the Voronoi          strategy
 //! line 24: propagate from the unexplored          strategy
@@ -16,6 +16,7 @@
 
 mod charge;
 mod correction;
+mod deskew;
 mod door;
 mod ending;
 mod errand;
@@ -148,8 +149,8 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
     timer: &mut impl StageTimer,
 ) -> Output {
     let host_ms = input.time_ms;
-    let input = match state.door.admit(config, &input) {
-        Ok(input) => input,
+    let (input, moved) = match state.door.admit(config, &input) {
+        Ok(admitted) => admitted,
         Err(error) => {
             return Output {
                 refused: Some(error),
@@ -186,7 +187,7 @@ pub fn step<const TILES: usize, const SLOTS: usize>(
             state.move_into_team(config, &motion);
             Output::default()
         }
-        None => explore(config, state, workspace, input, timer),
+        None => explore(config, state, workspace, (&input, moved.as_ref()), timer),
     };
     let velocity = commanded(config, state.status, output.velocity);
     state.drive.tell(velocity);

@@ -93,11 +93,19 @@ pub struct LaserMount {
     pub beams: u16,
     /// Range limit, millimetres: a beam beyond it returned from nothing.
     pub range_limit_mm: u16,
+    /// Time that the lidar takes from the first beam to the last one, milliseconds: at most
+    /// [`MAX_TURN_MS`](Self::MAX_TURN_MS); 0 if all beams are of one instant. Only a level laser
+    /// has one.
+    pub turn_time_ms: u16,
+    /// True if the first beam is the newest, false if it is the oldest.
+    pub newest_first: bool,
 }
 
 impl LaserMount {
     /// A laser with less pitch than this is level, radians.
     pub const LEVEL_RAD: f32 = 0.05;
+    /// Greatest turn time, milliseconds: 2 turns a second.
+    pub const MAX_TURN_MS: u16 = 500;
 
     /// A level scanner on the robot's axis: 181 beams over 180° ahead, 12 m.
     #[must_use]
@@ -117,6 +125,18 @@ impl LaserMount {
             bearing_step_rad: PI / 180.0,
             beams: MAX_BEAMS,
             range_limit_mm: 12_000,
+            turn_time_ms: 0,
+            newest_first: false,
+        }
+    }
+
+    /// The same laser, which takes `turn_time_ms` from its first beam to its last one, the oldest
+    /// first.
+    #[must_use]
+    pub const fn turning(self, turn_time_ms: u16) -> Self {
+        Self {
+            turn_time_ms,
+            ..self
         }
     }
 

@@ -34,6 +34,7 @@ use super::chart::Chart;
 use super::heights::HeightGrid;
 use super::strategy::{Outcome, Scene, Strategy, UnevenScene};
 use crate::link::LinkError;
+use crate::trial::at_once::AtOnce;
 
 /// Turn rate of a robot that looks around at its goal, radians per second; as in the planner.
 const LOOK_AROUND_RADPS: f32 = 0.6;
@@ -53,6 +54,7 @@ pub struct Session<S> {
     /// The strategy.
     pub strategy: S,
     config: Option<Config>,
+    at_once: AtOnce,
     status: Status,
     paused: bool,
     started: bool,
@@ -76,6 +78,7 @@ impl<S: Strategy> Session<S> {
         Self {
             strategy,
             config: None,
+            at_once: AtOnce::default(),
             status: Status::Idle,
             paused: false,
             started: false,
@@ -108,6 +111,7 @@ impl<S: Strategy> Session<S> {
         self.chart = Chart::new();
         self.strategy.reset();
         self.config = Some(config);
+        self.at_once = AtOnce::default();
         self.status = Status::Exploring;
         self.paused = false;
         self.started = false;

@@ -58,10 +58,11 @@ pub(super) struct ReplayArgs {
     #[arg(long, value_name = "FILE|PRESET", value_parser = robot)]
     robot: Option<RobotSpec>,
     /// Sweep of the laser: first angle and step in degrees, beams, range in metres, as in
-    /// -180,1,360,12 [default: told by the lines, or found by the scans]
+    /// -180,1,360,12; and, of a lidar that turns, seconds from the first beam to the last one
+    /// [default: told by the lines, or found by the scans; no turn time]
     #[arg(
         long,
-        value_name = "FIRST,STEP,BEAMS,RANGE",
+        value_name = "FIRST,STEP,BEAMS,RANGE[,TURN]",
         value_parser = robots::sweep,
         allow_hyphen_values = true
     )]

@@ -18,10 +18,11 @@ pub(super) struct RobotArgs {
     #[arg(long, value_name = "FILE|PRESET", value_parser = robot)]
     robot: Option<RobotSpec>,
     /// Sweep of the level lidar: first angle and step in degrees, beams, range in metres, as in
-    /// -135,0.5,541,12 [default: the robot's]
+    /// -135,0.5,541,12; and, of a lidar that turns, seconds from the first beam to the last one
+    /// [default: the robot's]
     #[arg(
         long,
-        value_name = "FIRST,STEP,BEAMS,RANGE",
+        value_name = "FIRST,STEP,BEAMS,RANGE[,TURN]",
         value_parser = sweep,
         allow_hyphen_values = true
     )]

@@ -17,7 +17,7 @@
 
 use std::collections::BTreeMap;
 
-use fieldline_device::TILES;
+use fieldline_device::{TILES, convert};
 use fieldline_planner::config::Tuning;
 use fieldline_protocol::message::{Control, Location, Observation, Quality, Status, Tile};
 use fieldline_slam::Motion;
@@ -30,6 +30,7 @@ use crate::link::{Link, LinkError};
 use crate::report::InputFaults;
 use crate::robot::wrap;
 use crate::slam::{Canvas, PoseGraph, SlamReport};
+use crate::trial::at_once::AtOnce;
 use crate::trial::mirror::Mirror;
 use crate::trial::snapshot;
 
@@ -140,6 +141,7 @@ pub fn run(
     let mut graph = slam.map(|motion| PoseGraph::new(laser.announced(), motion));
     let tile_pool = link.hello()?.tile_pool;
     let start = start(laser);
+    let (config, mut at_once) = (convert::config(&start, &Tuning::DEFAULT), AtOnce::default());
     let mut status = link.control(&Control::Start(start.clone()))?;
     let times = times_ms(laser, scans, odometry);
     let (mut poses, mut qualities) = (Vec::new(), Vec::new());
@@ -162,7 +164,8 @@ pub fn run(
             map_from_odom = compose(pose(location), inverse(*odom));
         }
         poses.push(compose(map_from_odom, *odom));
-        if let Some(graph) = &mut graph {
+        if let (Some(graph), Ok(config)) = (&mut graph, &config) {
+            let observation = at_once.take(config, &observation).into_owned();
             graph.observe(&observation, located.as_ref());
             seen.push(observation);
         }

@@ -56,6 +56,7 @@ impl LogLaser {
                 step_rad: step_rad.abs(),
                 beams: usual_beams(scans).unwrap_or(1),
                 most_m: limit_m,
+                turn_time_s: 0.0,
             },
             step_rad < 0.0,
         )
@@ -85,6 +86,8 @@ impl LogLaser {
             first_rad: sweep.first_rad,
             step_rad: sweep.step_rad,
             beams: sweep.beams,
+            turn_time_s: sweep.turn_time_s,
+            newest_first: false,
             least_m: 0.0,
             most_m: sweep.most_m,
             noise: LaserNoise::NONE,

@@ -7,7 +7,8 @@
 //! A measured range is `r + σ·N(0,1)`, rounded to millimetres. With a small probability no return
 //! comes (dark or shiny surfaces); with a smaller one a return comes from nearer than the wall
 //! (dust, an edge hit by half of the beam). The readings go through [`Sectors`], as those of a real
-//! lidar: the simulated one turns the way that it turns, and has as many beams as it has.
+//! lidar: the simulated one turns the way that it turns, and has as many beams as it has. One that
+//! takes a turn time casts each beam from where the robot was at that beam's instant.
 
 use fieldline_protocol::message::{self, MAX_BEAMS, Scan};
 use fixed::types::{I4F12, I16F16};
@@ -75,6 +76,7 @@ fn mount(x_m: f64, z_m: f64, down_deg: f64) -> message::Laser {
         bearing_step: I16F16::from_num(1.0_f64.to_radians()),
         beams: MAX_BEAMS as u16,
         range_limit_mm: 12_000,
+        ..message::Laser::default()
     }
 }
 
@@ -86,6 +88,8 @@ pub struct LaserScanner {
     position_m: [f64; 3],
     /// Directions of the beams in the robot's frame, from right to left.
     directions: Vec<[f64; 3]>,
+    /// Ages of these beams, seconds; empty if all are of one instant.
+    ages_s: Vec<f64>,
     limit_m: f64,
     errors: LaserNoise,
     range: Noise,
@@ -116,6 +120,13 @@ impl LaserScanner {
             directions: (0..sectors.promised())
                 .map(|position| sectors.direction(position))
                 .collect(),
+            ages_s: if lidar.turn_time_s > 0.0 {
+                (0..sectors.promised())
+                    .map(|position| lidar.age_s(position))
+                    .collect()
+            } else {
+                Vec::new()
+            },
             limit_m: lidar.most_m,
             errors: lidar.noise,
             range: Noise::new(seed, range),
@@ -142,33 +153,30 @@ impl LaserScanner {
 
     /// Measures one sweep from a pose.
     pub fn scan(&mut self, world: &World, pose: &Pose) -> Scan {
-        self.scan_among(world, |_, _| None, pose)
+        self.scan_among(world, |_, _| None, |_| *pose)
     }
 
-    /// Measures one sweep from a pose. `moving` returns the metres along a ray to the nearest of
-    /// what moves in the world, if it is within a limit.
+    /// Longest age of a beam, seconds.
+    #[must_use]
+    pub fn turn_time_s(&self) -> f64 {
+        self.ages_s.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Measures one sweep. `moving` returns the metres along a ray to the nearest of what moves in
+    /// the world, if it is within a limit. `pose` returns the robot's pose so many seconds ago.
     pub fn scan_among(
         &mut self,
         world: &World,
         moving: impl Fn(&Ray, f64) -> Option<f64>,
-        pose: &Pose,
+        pose: impl Fn(f64) -> Pose,
     ) -> Scan {
-        let axes = pose.axes();
-        let rotate = |v: &[f64; 3]| {
-            [0, 1, 2].map(|k| axes[0][k] * v[0] + axes[1][k] * v[1] + axes[2][k] * v[2])
-        };
-        let offset = rotate(&self.position_m);
-        let origin_m = [
-            pose.x_m + offset[0],
-            pose.y_m + offset[1],
-            pose.z_m + offset[2],
-        ];
+        let mut mount = Mount::at(&pose(0.0), &self.position_m);
         let mut readings_m = Vec::with_capacity(self.directions.len());
         for beam in 0..self.directions.len() {
-            let ray = Ray {
-                origin_m,
-                direction: rotate(&self.directions[beam]),
-            };
+            if let Some(age_s) = self.ages_s.get(beam) {
+                mount = Mount::at(&pose(*age_s), &self.position_m);
+            }
+            let ray = mount.ray(&self.directions[beam]);
             let hit_m = world.cast(&ray, self.limit_m).map(|hit| hit.range_m);
             let nearer_m = moving(&ray, hit_m.unwrap_or(self.limit_m));
             readings_m.push(self.measure(nearer_m.or(hit_m)));
@@ -192,6 +200,42 @@ impl LaserScanner {
         match range_m {
             Some(range_m) if fate < 1.0 - self.errors.lost => (range_m + error_m).max(NEAREST_M),
             _ => f64::INFINITY,
+        }
+    }
+}
+
+/// A laser in the world.
+struct Mount {
+    axes: [[f64; 3]; 3],
+    origin_m: [f64; 3],
+}
+
+impl Mount {
+    /// Returns the laser at a place on a robot with this pose.
+    fn at(pose: &Pose, position_m: &[f64; 3]) -> Self {
+        let mut mount = Self {
+            axes: pose.axes(),
+            origin_m: [0.0; 3],
+        };
+        let offset = mount.rotate(position_m);
+        mount.origin_m = [
+            pose.x_m + offset[0],
+            pose.y_m + offset[1],
+            pose.z_m + offset[2],
+        ];
+        mount
+    }
+
+    fn rotate(&self, v: &[f64; 3]) -> [f64; 3] {
+        let axes = &self.axes;
+        [0, 1, 2].map(|k| axes[0][k] * v[0] + axes[1][k] * v[1] + axes[2][k] * v[2])
+    }
+
+    /// Returns the beam that leaves in a direction of the robot's frame.
+    fn ray(&self, direction: &[f64; 3]) -> Ray {
+        Ray {
+            origin_m: self.origin_m,
+            direction: self.rotate(direction),
         }
     }
 }

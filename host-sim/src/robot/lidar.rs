@@ -7,11 +7,15 @@
 //! bearing(i) = yaw + u (first + c i step)      u = −1 upside down, c = −1 clockwise, else 1
 //! ```
 //!
+//! A lidar takes its turn time T from the first beam to the last one. With the newest beam last,
+//! beam i of m is by `T (m − 1 − i) / (m − 1)` older than the scan; a driver that turned the scan
+//! round may tell the newest one first.
+//!
 //! Bearings of the wire grow with the beam's number. Where u·c = −1 they fall, and the host turns
 //! the scan round: [`Lidar::is_reversed`]. Position p counts the beams as the robot sees them, from
 //! right to left.
 //!
-//! Metres, radians; x ahead, y to the left, z up; bearings counter-clockwise from ahead.
+//! Metres, radians, seconds; x ahead, y to the left, z up; bearings counter-clockwise from ahead.
 
 use core::f64::consts::TAU;
 
@@ -44,6 +48,10 @@ pub struct Lidar {
     pub step_rad: f64,
     /// Beams that it promises a sweep.
     pub beams: usize,
+    /// Time from its first beam to its last one, seconds; 0 if all are of one instant.
+    pub turn_time_s: f64,
+    /// The beam that it tells first is the newest, not the oldest.
+    pub newest_first: bool,
     /// Least range, metres: a lesser reading carries no information.
     pub least_m: f64,
     /// Greatest range, metres: a reading of it or more met nothing.
@@ -69,6 +77,8 @@ impl Lidar {
             first_rad: laser.first_bearing.to_num(),
             step_rad: laser.bearing_step.to_num(),
             beams: usize::from(laser.beams),
+            turn_time_s: f64::from(laser.turn_time_ms) / 1000.0,
+            newest_first: laser.newest_first,
             least_m: super::laser::NEAREST_M,
             most_m: f64::from(laser.range_limit_mm) / 1000.0,
             noise,
@@ -100,6 +110,24 @@ impl Lidar {
             first
         };
         right - TAU * ((right + 0.5 * sweep) / TAU).round()
+    }
+
+    /// Returns true if the rightmost beam is the newest.
+    #[must_use]
+    pub const fn is_newest_right(&self) -> bool {
+        self.newest_first != self.is_reversed()
+    }
+
+    /// Returns by how much the beam at a position is older than the newest one, seconds.
+    #[must_use]
+    pub fn age_s(&self, position: usize) -> f64 {
+        let last = self.beams.saturating_sub(1).max(1);
+        let later = if self.is_newest_right() {
+            position
+        } else {
+            last.saturating_sub(position)
+        };
+        self.turn_time_s * later as f64 / last as f64
     }
 
     /// Returns true if something of the robot is in the way at a bearing, radians.
@@ -164,6 +192,29 @@ mod tests {
         for first_deg in [-720.0, -360.0, 0.0, 45.0, 360.0, 3600.0] {
             let right = right_deg(&lidar(first_deg, 0.8, 450));
             assert!((-360.0..=1.0).contains(&right), "{first_deg}: {right}");
+        }
+    }
+
+    /// A lidar tells its oldest beam first, unless its driver turned the scan round.
+    #[test]
+    fn the_oldest_beam_is_where_the_lidar_begins() {
+        for (clockwise, newest_first) in [(false, false), (true, false), (false, true)] {
+            let lidar = Lidar {
+                turn_time_s: 0.2,
+                clockwise,
+                newest_first,
+                ..lidar(0.0, 2.0, 5)
+            };
+            let ages = [0, 1, 4].map(|position| lidar.age_s(position));
+            let expected = if clockwise || newest_first {
+                [0.0, 0.05, 0.2]
+            } else {
+                [0.2, 0.15, 0.0]
+            };
+            let off = |(age, expected): (&f64, &f64)| (age - expected).abs();
+            let worst = ages.iter().zip(&expected).map(off).fold(0.0, f64::max);
+            assert!(worst < 1e-12, "{ages:?}");
+            assert_eq!(lidar.is_newest_right(), clockwise || newest_first);
         }
     }
 

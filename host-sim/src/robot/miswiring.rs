@@ -13,6 +13,7 @@
 //! | `odometry-times=F` | odometry counts F times the way |
 //! | `yaw-times=F` | odometry counts F times the turn |
 //! | `ranges-times=F` | the lidars measure F times the range |
+//! | `turn-time-untold` | a lidar turns while the robot moves, and its mount does not say it |
 //! | `clock-stands` | the time of the observations stands |
 //! | `clock-times=F` | it goes on F times as fast |
 //!
@@ -49,6 +50,8 @@ pub struct Miswiring {
     pub ranges_times: f64,
     /// Factor of the clock.
     pub clock_times: f64,
+    /// No mount says the turn time of its lidar.
+    pub turn_time_untold: bool,
 }
 
 impl Default for Miswiring {
@@ -61,6 +64,7 @@ impl Default for Miswiring {
             odometry: [1.0; 2],
             ranges_times: 1.0,
             clock_times: 1.0,
+            turn_time_untold: false,
         }
     }
 }
@@ -143,6 +147,7 @@ impl Miswiring {
             "odometry-times=" => self.odometry[0] = factor()?,
             "yaw-times=" => self.odometry[1] = factor()?,
             "ranges-times=" => self.ranges_times = factor()?,
+            "turn-time-untold" => self.turn_time_untold = true,
             "clock-stands" => self.clock_times = 0.0,
             "clock-times=" => self.clock_times = factor()?,
             _ => return Err(word.unknown()),
@@ -155,7 +160,7 @@ const FORM: Form = Form {
     what: "wiring mistake",
     usage: "one or more of mirrored, laser-turned=DEG, lasers-swapped, yaw-sign, way-sign, \
             wheels-swapped, reversed, millimetres, odometry-times=F, yaw-times=F, ranges-times=F, \
-            clock-stands, clock-times=F, separated by commas",
+            turn-time-untold, clock-stands, clock-times=F, separated by commas",
     repeated: "",
 };
 
@@ -190,6 +195,7 @@ impl fmt::Display for Miswiring {
         say(turn > 0.0 && turn != 1.0, format!("yaw-times={turn}"));
         let (ranges, clock) = (self.ranges_times, self.clock_times);
         say(ranges != 1.0, format!("ranges-times={ranges}"));
+        say(self.turn_time_untold, "turn-time-untold".into());
         say(clock == 0.0, "clock-stands".into());
         say(clock != 0.0 && clock != 1.0, format!("clock-times={clock}"));
         f.write_str(&words.join(","))
@@ -203,7 +209,7 @@ mod tests {
     #[test]
     fn a_text_is_read_and_written() {
         let text = "mirrored,laser-turned=90,lasers-swapped,yaw-sign,way-sign,wheels-swapped,\
-                    ranges-times=0.001,clock-stands";
+                    ranges-times=0.001,turn-time-untold,clock-stands";
         let read: Miswiring = text.parse().expect("valid");
         assert_eq!(read.to_string(), text);
         let millimetres: Miswiring = "millimetres".parse().expect("valid");

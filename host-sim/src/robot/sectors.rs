@@ -115,6 +115,8 @@ impl Sectors {
             bearing_step: I16F16::saturating_from_num(step_rad * group as f64),
             beams: promised.div_ceil(group) as u16,
             range_limit_mm: (most_m * 1000.0).round() as u16,
+            turn_time_ms: (lidar.turn_time_s * 1000.0).round() as u16,
+            newest_first: lidar.is_newest_right(),
         };
         let mut sectors = Self {
             laser,

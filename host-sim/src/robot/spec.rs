@@ -11,6 +11,8 @@ use core::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
 
+use fieldline_planner::LaserMount;
+
 use super::drive::DriveLimits;
 use super::file::{self, RobotError};
 use super::footprint::Footprint;
@@ -101,6 +103,7 @@ impl RobotSpec {
             level.beams = sweep.beams;
             level.most_m = sweep.most_m;
             level.least_m = level.least_m.min(sweep.most_m);
+            (level.turn_time_s, level.newest_first) = (sweep.turn_time_s, false);
             (level.clockwise, level.upside_down) = (false, false);
         }
         self
@@ -124,11 +127,16 @@ pub struct Sweep {
     pub beams: usize,
     /// Greatest range, metres.
     pub most_m: f64,
+    /// Time from the first beam to the last one, seconds.
+    pub turn_time_s: f64,
 }
 
 impl Sweep {
     /// Beams of a lidar.
     pub const BEAMS: core::ops::RangeInclusive<usize> = 4..=4096;
+    /// Times from the first beam to the last one, seconds: those of the planner.
+    pub const TURN_TIMES_S: core::ops::RangeInclusive<f64> =
+        0.0..=LaserMount::MAX_TURN_MS as f64 / 1000.0;
     /// Greatest range of a lidar, metres.
     pub const RANGES_M: core::ops::RangeInclusive<f64> = 0.1..=100.0;
 
@@ -158,23 +166,36 @@ impl Sweep {
                 self.most_m
             ));
         }
+        if !Self::TURN_TIMES_S.contains(&self.turn_time_s) {
+            return Some(format!(
+                "the turn time must be 0 to {} s, not {}",
+                Self::TURN_TIMES_S.end(),
+                self.turn_time_s
+            ));
+        }
         None
     }
 }
 
-/// Parses `FIRST,STEP,BEAMS,RANGE` in degrees and metres.
+/// Parses `FIRST,STEP,BEAMS,RANGE` or `FIRST,STEP,BEAMS,RANGE,TURN_TIME`, in degrees, metres and
+/// seconds.
 impl core::str::FromStr for Sweep {
     type Err = SpecError;
 
     fn from_str(text: &str) -> Result<Self, SpecError> {
-        let form = "give FIRST,STEP,BEAMS,RANGE in degrees and metres, as in -135,0.5,541,12";
+        let form = "give FIRST,STEP,BEAMS,RANGE in degrees and metres, as in -135,0.5,541,12; a \
+                    fifth number is the turn time in seconds";
         let is_number = |part: &&str| spec::numbers(part).is_some_and(|it| it.len() == 1);
         if let Some(part) = text.split(',').map(str::trim).find(|part| !is_number(part)) {
             let reason = format!("'{part}' is not a number; {form}");
             return Err(SpecError::new(reason));
         }
-        let Some(&[first, step, beams, most_m]) = spec::numbers(text).as_deref() else {
-            return Err(SpecError::new(form));
+        let (first, step, beams, most_m, turn_time_s) = match spec::numbers(text).as_deref() {
+            Some(&[first, step, beams, most_m]) => (first, step, beams, most_m, 0.0),
+            Some(&[first, step, beams, most_m, turn_time]) => {
+                (first, step, beams, most_m, turn_time)
+            }
+            _ => return Err(SpecError::new(form)),
         };
         if beams.fract() != 0.0 || beams < 0.0 {
             let reason = format!("'{beams}' is no number of beams; {form}");
@@ -185,6 +206,7 @@ impl core::str::FromStr for Sweep {
             step_rad: step.to_radians(),
             beams: beams as usize,
             most_m,
+            turn_time_s,
         };
         sweep
             .fault()
@@ -197,9 +219,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sweep_is_four_numbers() {
+    fn a_sweep_is_four_numbers_and_a_turn_time() {
         let sweep: Sweep = "-135, 0.5,541,12".parse().expect("a sweep");
         assert_eq!((sweep.beams, sweep.most_m), (541, 12.0));
+        assert_eq!(sweep.turn_time_s, 0.0);
+        let turning: Sweep = "0,1,360,12,0.2".parse().expect("a sweep");
+        assert_eq!(turning.turn_time_s, 0.2);
         assert!((sweep.first_rad.to_degrees() + 135.0).abs() < 1e-9);
         for (text, word) in [
             ("", "as in"),
@@ -213,6 +238,8 @@ mod tests {
             ("9999,1,360,12", "two turns"),
             ("0,1,360,0", "0.1 to 100"),
             ("0,nan,360,12", "'nan'"),
+            ("0,1,360,12,200", "0 to 0.5 s, not 200"),
+            ("0,1,360,12,0.1,1", "as in"),
         ] {
             let error = text.parse::<Sweep>().expect_err(text).to_string();
             assert!(error.contains(word), "{text}: {error}");
@@ -228,6 +255,7 @@ mod tests {
         assert_eq!(robot.lidars[1], usual.lidars[1]);
         assert_eq!(robot.lidars[0].position_m, usual.lidars[0].position_m);
         assert_eq!(robot.lidars[0].beams, 450);
+        assert_eq!(robot.lidars[0].turn_time_s, 0.0);
         // Also of a lidar that turned the other way: −90° to 90° is ahead.
         let ahead: Sweep = "-90,1,181,8".parse().expect("a sweep");
         let round = RobotSpec::open("round-0.35").expect("a preset");

@@ -4,7 +4,7 @@
 //! the wire knows boxes only: the planner then counts on more room than the robot needs.
 //! Accelerations are rounded down, so that the planner never counts on more than there is.
 
-use fieldline_protocol::message::{Hull, Start, Strategy};
+use fieldline_protocol::message::{Hull, Laser, Start, Strategy};
 use fixed::types::I4F12;
 
 use super::Simulator;
@@ -53,11 +53,20 @@ impl Simulator<'_> {
                 .lasers
                 .iter()
                 .map(LaserScanner::announced)
-                .copied()
+                .map(|laser| self.told(laser))
                 .collect(),
             period_ms: u16::try_from(config.period_ms).unwrap_or(u16::MAX),
             order: strategy.order(),
             ..of_robot(&config.footprint, config.radius_m, &config.limits)
         }
+    }
+
+    /// Returns what the start message says of a laser.
+    fn told(&self, laser: &Laser) -> Laser {
+        let mut laser = *laser;
+        if self.config.miswiring.turn_time_untold {
+            laser.turn_time_ms = 0;
+        }
+        laser
     }
 }

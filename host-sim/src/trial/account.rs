@@ -97,7 +97,7 @@ impl Survey for Account {
             self.mirror.forget_arrivals();
         }
         if let Some(particles) = &mut self.particles {
-            particles.observe(observation, truth);
+            particles.observe(&self.mirror.measured(observation), truth);
         }
         if let Some(seen) = &mut self.seen {
             let pose = record::unstamped(truth);

@@ -75,6 +75,10 @@ impl MapCopy for Mirror {
         Self::correct(self, correction);
     }
 
+    fn measured(&self, observation: &Observation) -> Observation {
+        Self::measured(self, observation)
+    }
+
     fn standing(&self, observation: &Observation) -> Observation {
         Self::standing(self, observation)
     }

@@ -16,6 +16,7 @@ use fieldline_planner::math;
 use fieldline_planner::planner::recall::Surroundings;
 use fieldline_protocol::message::{Finish, Observation, Recall, Start, Status, Tile};
 
+use super::at_once::AtOnce;
 use super::relief::Relief;
 use super::snapshot::Window;
 use crate::link::correction::{Classes, CorrectedTile, MapCorrection, Motion};
@@ -30,6 +31,7 @@ pub struct Mirror {
     /// `None` if the device refuses the session's parameters. The map then stays empty.
     config: Option<Config>,
     localiser: Localiser,
+    at_once: AtOnce,
     map: Box<Map<TILES, SLOTS>>,
     surroundings: Surroundings,
     pose: Pose,
@@ -57,6 +59,7 @@ impl Mirror {
         Self {
             config,
             localiser: Localiser::new(),
+            at_once: AtOnce::default(),
             map,
             surroundings: Surroundings::new(),
             pose,
@@ -75,10 +78,12 @@ impl Mirror {
                 | Status::EmergencyStop
                 | Status::Finished(Finish::Stopped)
         );
-        let Some(config) = self.config.as_ref().filter(|_| !held) else {
+        let Some(config) = &self.config else {
             return;
         };
-        let Some(input) = convert::input(observation, config.lasers()) else {
+        let observation = &*self.at_once.take(config, observation);
+        let input = convert::input(observation, config.lasers());
+        let Some(input) = input.filter(|_| !held) else {
             return;
         };
         let MapPose(pose) = self.localiser.locate(config, &self.map, &input);
@@ -145,14 +150,21 @@ impl Mirror {
         self.epoch
     }
 
+    /// Returns the last step's observation, with scans of one instant.
+    #[must_use]
+    pub fn measured(&self, observation: &Observation) -> Observation {
+        self.at_once.again(observation)
+    }
+
     /// Returns the last step's observation, on uneven ground with the beams of the first laser
     /// alone that end at what stands.
     #[must_use]
     pub fn standing(&self, observation: &Observation) -> Observation {
-        let mut seen = observation.clone();
+        let measured = self.measured(observation);
+        let mut seen = measured.clone();
         let uneven = self.config.as_ref().filter(|it| it.ground().is_some());
         if let Some(config) = uneven
-            && let Some(input) = convert::input(observation, config.lasers())
+            && let Some(input) = convert::input(&measured, config.lasers())
             && let Some(scan) = seen.scans.first_mut()
         {
             let pose = self.pose;

@@ -6,6 +6,7 @@
 //! record, except for measured times.
 
 mod account;
+pub mod at_once;
 mod body;
 pub mod corrector;
 pub mod ending;

@@ -29,6 +29,7 @@ pub(crate) fn start() -> Start {
         bearing_step: I16F16::from_num(core::f64::consts::PI / 180.0),
         beams: 181,
         range_limit_mm: 12_000,
+        ..Laser::default()
     };
     let tilted = Laser {
         pitch: I4F12::from_num(PITCH),

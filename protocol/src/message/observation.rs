@@ -53,7 +53,8 @@ pub struct Scan {
     pub ranges_mm: Vec<u16, MAX_BEAMS>,
 }
 
-/// Measurements of the robot at one instant.
+/// Measurements of the robot at one instant: that of the newest beam, if a laser turns while the
+/// robot moves.
 ///
 /// The scans must match the session's lasers in number and length, the pose must lie within 10 km,
 /// and the robot may lean by at most 60°. If not, the device makes no step and answers with zero

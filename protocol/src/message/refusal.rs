@@ -57,6 +57,8 @@ pub enum Parameter {
     /// [`Start::fence`]: the polygons have all corners, each at least 3 of them, an area and no
     /// crossing; corners within 3200 m.
     Fence,
+    /// [`Laser::turn_time_ms`]: at most 500; 0 for a laser that looks down by 0.05 rad or more.
+    TurnTime,
 }
 
 /// Why the device refused a request.

@@ -30,6 +30,12 @@ pub struct Laser {
     pub beams: u16,
     /// Range limit, millimetres: the laser reports nothing beyond it.
     pub range_limit_mm: u16,
+    /// Time from the first beam to the last one, milliseconds: at most 500, and 0 if all beams are
+    /// of one instant or the laser looks down. The device moves the beams to the instant of the
+    /// newest one, for which the observation's pose stands.
+    pub turn_time_ms: u16,
+    /// True if the first beam is the newest, false if it is the oldest.
+    pub newest_first: bool,
 }
 
 /// The strategy that plans.

@@ -313,6 +313,7 @@ fn reply_refused() {
         (Refusal::BadParameter(Parameter::Coverage), &[7, 3, 18]),
         (Refusal::BadParameter(Parameter::Team), &[7, 3, 19]),
         (Refusal::BadParameter(Parameter::Fence), &[7, 3, 20]),
+        (Refusal::BadParameter(Parameter::TurnTime), &[7, 3, 21]),
         (Refusal::NoTeam, &[7, 4]),
         (Refusal::NoCorrection, &[7, 5]),
         (Refusal::BadCorrection, &[7, 6]),

@@ -111,6 +111,8 @@ fn laser() -> Laser {
         bearing_step: long(0.015_625),
         beams: 181,
         range_limit_mm: 12_000,
+        turn_time_ms: 130,
+        newest_first: true,
     }
 }
 
@@ -180,6 +182,7 @@ fn request_control_start() {
             0x80, 0x10, // step 1/64 rad = 1024/65536
             0xb5, 0x01, // 181 beams
             0xe0, 0x5d, // 12000 mm
+            0x82, 0x01, 1, // 130 ms a turn, the newest beam first
             0xfc, 0x03, 0xf1, 0x03, 0x95, 0x02, // hull 508 x 497 x 277 mm
             0xac, 0x02, // radius 300 mm
             0x80, 0x30, // 0.75 m/s

@@ -22,5 +22,6 @@ mod replay;
 mod robots;
 mod space;
 mod starts;
+mod turning;
 mod whole;
 mod wiring;

@@ -152,6 +152,7 @@ fn every_limit_of_a_laser_is_checked() {
             with_laser(|it| it.pitch = I4F12::lit("1.6")),
             Parameter::Pitch,
         ),
+        (with_laser(|it| it.turn_time_ms = 501), Parameter::TurnTime),
         (with_laser(|it| it.z = I4F12::ZERO), Parameter::Mount),
         (with_laser(|it| it.x = I4F12::MIN), Parameter::Mount),
         (

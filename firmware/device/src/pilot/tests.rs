@@ -26,6 +26,8 @@ pub(crate) fn start() -> Start {
         bearing_step: I16F16::lit("0.017453"),
         beams: 181,
         range_limit_mm: 12_000,
+        turn_time_ms: 0,
+        newest_first: false,
     };
     let tilted = Laser {
         pitch: I4F12::lit("0.349"),

@@ -312,7 +312,16 @@ fn check_laser(laser: &LaserMount, is_first: bool) -> Result<(), ConfigError> {
     }
     check(Parameter::Mount, laser.x_m, (-MOUNT_M, MOUNT_M))?;
     check(Parameter::Mount, laser.y_m, (-MOUNT_M, MOUNT_M))?;
-    check(Parameter::LaserHeight, laser.z_m, (POSITIVE, MOUNT_M))
+    check(Parameter::LaserHeight, laser.z_m, (POSITIVE, MOUNT_M))?;
+    let most_ms = match laser.is_level() {
+        true => f32::from(LaserMount::MAX_TURN_MS),
+        false => 0.0,
+    };
+    check(
+        Parameter::TurnTime,
+        f32::from(laser.turn_time_ms),
+        (0.0, most_ms),
+    )
 }
 
 fn check_place(place: &TeamPlace) -> Result<(), ConfigError> {

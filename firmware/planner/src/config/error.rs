@@ -23,6 +23,8 @@ pub enum Parameter {
     Mount,
     /// Height of a laser, metres.
     LaserHeight,
+    /// Turn time of a laser, milliseconds: 0 for one that is not level.
+    TurnTime,
     /// Half the robot's length, metres.
     HalfLength,
     /// Half the robot's width, metres.
@@ -81,6 +83,7 @@ impl fmt::Display for Parameter {
             Self::Pitch => "pitch of a laser (rad)",
             Self::Mount => "offset of a laser (m)",
             Self::LaserHeight => "height of a laser (m)",
+            Self::TurnTime => "turn time of a laser (ms)",
             Self::HalfLength => "half length of the robot (m)",
             Self::HalfWidth => "half width of the robot (m)",
             Self::Height => "height of the robot (m)",

@@ -23,6 +23,7 @@ use crate::config::Config;
 use crate::geometry::{MapFromOdom, MapPose, OdomPose, Pose, Twist};
 use crate::input::{Input, InputError, InputFaults};
 use crate::math;
+use crate::planner::deskew::{Moved, Report};
 
 /// Greatest coordinate of the odometry, metres. Farther off, f32 does not resolve a millimetre, and
 /// the wire has no room for the sum of odometry and correction.
@@ -69,13 +70,21 @@ impl Door {
         self.faults
     }
 
+    /// Returns the last report, if a lidar of this robot turns while the robot moves.
+    fn last_report(&self, config: &Config) -> Option<Report> {
+        let (_, pose) = self.last.as_ref()?;
+        let turns = config.lasers.iter().any(|laser| laser.turn_time_ms > 0);
+        turns.then(|| (self.now_ms, self.corrected(pose)))
+    }
+
     /// Notes that a report was refused.
     pub(super) const fn note_refused(&mut self) {
         self.faults.refused = self.faults.refused.saturating_add(1);
     }
 
-    /// Lets a report in: with the session's clock, and the session's odometry. It is called from
-    /// two places, so it is not inlined.
+    /// Lets a report in: with the session's clock, and the session's odometry. Also tells how the
+    /// robot moved since the last one, if a scan needs it and nothing is wrong with either report.
+    /// It is called from two places, so it is not inlined.
     ///
     /// # Errors
     /// [`InputError`]: what cannot be used.
@@ -84,20 +93,26 @@ impl Door {
         &mut self,
         config: &Config,
         input: &Input<'a>,
-    ) -> Result<Input<'a>, InputError> {
+    ) -> Result<(Input<'a>, Option<Moved>), InputError> {
         if let Err(error) = check(config, input) {
             self.note_refused();
             return Err(error);
         }
+        let (before, faults) = (self.last_report(config), self.faults);
         let elapsed_ms = self.elapse(config, input.time_ms);
         self.follow(config, &input.pose, elapsed_ms);
         self.last = Some((input.time_ms, input.pose));
-        Ok(Input {
-            time_ms: self.now_ms,
-            pose: self.corrected(&input.pose),
+        let now = (self.now_ms, self.corrected(&input.pose));
+        let before = before.filter(|_| self.faults == faults);
+        let moved = before.and_then(|before| Moved::between(config, &before, &now));
+        let (time_ms, pose) = now;
+        let admitted = Input {
+            time_ms,
+            pose,
             velocity: limited(config, input.velocity),
             scans: input.scans,
-        })
+        };
+        Ok((admitted, moved))
     }
 
     /// Advances the session's clock. Returns by how much.

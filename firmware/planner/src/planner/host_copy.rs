@@ -1,13 +1,49 @@
 //! What a host needs that follows a robot of a team with a planner of its own: a survey that takes
-//! the same inputs, hears the same packets, and so has the same map.
+//! the same inputs, hears the same packets, and so has the same map. A host that keeps scans brings
+//! them to one instant first, as the planner does.
 //!
 //! Units: metres, milliseconds, millimetres of range.
 
 use crate::config::Config;
 use crate::input::Input;
 use crate::map::Map;
+use crate::planner::deskew::{Room, deskew};
+use crate::planner::door::Door;
 use crate::planner::sight::{Ranges, hide_peers};
 use crate::planner::state::State;
+use crate::robot::MAX_BEAMS;
+
+/// Brings the scans of one input after the other to the instant of their pose.
+#[derive(Debug)]
+pub struct AtOnce {
+    door: Door,
+    room: Room,
+}
+
+impl AtOnce {
+    /// Returns that of a new session.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            door: Door::new(),
+            room: [[0; MAX_BEAMS as usize]; 2],
+        }
+    }
+
+    /// Returns the scans of an input as a step reads them. It takes all inputs, also those of a
+    /// robot that stands by order.
+    pub fn scans<'a>(&'a mut self, config: &Config, input: &Input<'a>) -> [&'a [u16]; 2] {
+        let moved = self.door.admit(config, input).ok();
+        let moved = moved.and_then(|(_, moved)| moved);
+        deskew(config, input, moved.as_ref(), &mut self.room).scans
+    }
+}
+
+impl Default for AtOnce {
+    fn default() -> Self {
+        Self::new()
+    }
+}
 
 /// Returns the map.
 #[must_use]

@@ -22,14 +22,14 @@ const BLOCKED_M: f32 = 0.12;
 const DARK_STEPS: u8 = 2;
 
 impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
-    /// Takes what the robot sensed. Returns it with the pose in the map; `None` if the robot stands
-    /// in this step.
-    pub(super) fn sense<'a>(
+    /// Takes what the robot sensed. Returns its pose in the map; `None` if the robot stands in this
+    /// step.
+    pub(super) fn sense(
         &mut self,
         config: &Config,
-        input: Input<'a>,
+        input: Input<'_>,
         timer: &mut impl StageTimer,
-    ) -> Option<Input<'a>> {
+    ) -> Option<MapPose> {
         let MapPose(expected) = self.localiser.to_map(&OdomPose(input.pose));
         let peers = self.team.peers();
         let MapPose(pose) = if peers.may_be_seen(input.time_ms, &expected, &config.lasers) {
@@ -55,7 +55,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             self.mind_budget(config, input.time_ms);
         }
         timer.mark(Stage::Sense);
-        (plans && self.status.drives() && !self.is_dark(config, &input)).then_some(input)
+        (plans && self.status.drives() && !self.is_dark(config, &input)).then_some(MapPose(pose))
     }
 
     /// Returns true if no beam has told anything for some steps. Then the robot is not blamed for

@@ -17,9 +17,10 @@
 use crate::config::Config;
 use crate::doing::Doing;
 use crate::field::{SolverConfig, Stop, solve};
-use crate::geometry::{Point, Twist};
+use crate::geometry::{MapPose, Point, Twist};
 use crate::input::Input;
 use crate::planner::Output;
+use crate::planner::deskew::{Moved, deskew};
 use crate::planner::make_way::Way;
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
@@ -47,16 +48,23 @@ pub(super) fn explore<const TILES: usize, const SLOTS: usize>(
     config: &Config,
     state: &mut State<TILES, SLOTS>,
     workspace: &mut Workspace,
-    input: Input<'_>,
+    (input, moved): (&Input<'_>, Option<&Moved>),
     timer: &mut impl StageTimer,
 ) -> Output {
     if !state.status.goes_on() {
         return Output::default();
     }
-    match state.sense(config, input, timer) {
-        Some(input) => Step::new(config, state, workspace, input).act(timer),
-        None => Output::default(),
-    }
+    let sensed = deskew(config, input, moved, &mut workspace.scans);
+    let Some(MapPose(pose)) = state.sense(config, sensed, timer) else {
+        return Output::default();
+    };
+    // No later stage reads a scan.
+    let input = Input {
+        pose,
+        scans: [&[], &[]],
+        ..*input
+    };
+    Step::new(config, state, workspace, input).act(timer)
 }
 
 impl<'a, const TILES: usize, const SLOTS: usize> Step<'a, TILES, SLOTS> {

@@ -52,7 +52,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
     /// Enters an input without a step: the robot stands by order, or its exploration has ended.
     /// Only its team learns of it.
     pub fn stand(&mut self, config: &Config, input: &Input<'_>) {
-        let Ok(input) = &self.door.admit(config, input) else {
+        let Ok((input, _)) = &self.door.admit(config, input) else {
             return;
         };
         self.wiring.release();

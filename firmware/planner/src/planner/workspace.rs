@@ -6,6 +6,8 @@ use crate::field::local_grid::LocalGrid;
 use crate::field::{GOAL, SCRATCH_FLOATS, SIDE, Window};
 use crate::geometry::Cell;
 use crate::path::PlanningScratch;
+use crate::planner::deskew::Room;
+use crate::robot::MAX_BEAMS;
 
 /// Words of scratch.
 pub(super) const SCRATCH: usize = SCRATCH_FLOATS;
@@ -22,6 +24,8 @@ pub struct Workspace {
     /// The passable cells of the window.
     pub(super) local_grid: LocalGrid,
     pub(super) scratch: [f32; SCRATCH],
+    /// The step's scans, moved to one instant.
+    pub(super) scans: Room,
 }
 
 impl Workspace {
@@ -33,6 +37,7 @@ impl Workspace {
             window_at: None,
             local_grid: LocalGrid::new(),
             scratch: [0.0; SCRATCH],
+            scans: [[0; MAX_BEAMS as usize]; 2],
         }
     }
 

@@ -36,7 +36,8 @@ impl<S: Strategy> Session<S> {
         let Some(config) = self.config.take() else {
             return Err(refused(Refusal::NotStarted));
         };
-        let command = match convert::input(observation, config.lasers()) {
+        let observation = self.at_once.take(&config, observation).into_owned();
+        let command = match convert::input(&observation, config.lasers()) {
             None => standing(Status::Fault(Fault::BadObservation)),
             Some(input) if matches!(self.status(), Status::Exploring | Status::NoScan) => {
                 self.step(&config, &input)

@@ -214,7 +214,7 @@ pub(in crate::cli) struct ExploreArgs {
     pub(in crate::cli) disturb: Option<Disturbances>,
     /// What is wired wrongly, one or more of mirrored, laser-turned=DEG, lasers-swapped, yaw-sign,
     /// way-sign, wheels-swapped, reversed, millimetres, odometry-times=F, yaw-times=F,
-    /// ranges-times=F, clock-stands, clock-times=F
+    /// ranges-times=F, turn-time-untold, clock-stands, clock-times=F
     #[arg(long, value_name = "SPEC")]
     pub(in crate::cli) miswire: Option<Miswiring>,
     /// Number of people who walk about, 0 to 50, on flat ground

@@ -55,6 +55,9 @@ pub(super) struct LaserKeys {
     pub(super) step: Option<Number>,
     pub(super) field: Option<Number>,
     pub(super) beams: Number,
+    pub(super) turn_time: Option<Number>,
+    #[serde(default)]
+    pub(super) newest_first: bool,
     pub(super) least_range: Option<Number>,
     pub(super) range: Number,
     pub(super) noise: Option<NoiseKeys>,

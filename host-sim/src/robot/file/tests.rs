@@ -77,6 +77,12 @@ fn a_fault_names_file_line_and_remedy() {
             10,
             "give 0 to 10 m",
         ),
+        (
+            "range: 10",
+            "range: 10\n    turn_time: 100",
+            10,
+            "turn_time is 100; give 0 to 0.5 s",
+        ),
         ("[40, 50]", "[40, 900]", 10, "as in [170, -170]"),
         ("[40, 50]", "[-180, 179.9]", 4, "covers every beam"),
         ("times: 4", "times: -1", 11, "give 0 to 1000"),
@@ -88,6 +94,20 @@ fn a_fault_names_file_line_and_remedy() {
         let says = error.to_lowercase().contains(&word.to_lowercase());
         assert!(error.starts_with(&place) && says, "{is}: {error}");
     }
+}
+
+#[test]
+fn a_lidar_may_take_a_turn() {
+    let still = &of(GOOD).expect("good").lidars[0];
+    assert_eq!((still.turn_time_s, still.newest_first), (0.0, false));
+    let turning = "range: 10\n    turn_time: 0.1\n    newest_first: true";
+    let text = GOOD.replace("range: 10", turning);
+    let lidar = &of(&text).expect("good").lidars[0];
+    assert_eq!((lidar.turn_time_s, lidar.newest_first), (0.1, true));
+    let place = "  - {x: 0, y: 0, z: 0.3, pitch: 20, field: 180, beams: 181, range: 8";
+    let down = format!("{place}, turn_time: 0.1}}\nodometry");
+    let error = of(&GOOD.replace("odometry", &down)).expect_err("it looks down");
+    assert!(error.to_string().contains("level lasers only"), "{error}");
 }
 
 #[test]

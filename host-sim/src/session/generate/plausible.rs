@@ -15,7 +15,7 @@ use super::packets::Team;
 use super::quantities::{centimetres, origin_ms};
 use super::spoil::{Fate, Faults};
 use super::{Host, starts};
-use crate::robot::{OdometryModel, OdometryNoise};
+use crate::robot::{Lidar, OdometryModel, OdometryNoise, usual_lidars};
 use crate::session::ask::{Answer, Ask};
 use crate::session::choices::Choices;
 use crate::sim::{SimConfig, Simulator};
@@ -93,6 +93,9 @@ impl<C: Choices> Plausible<C> {
     pub(super) fn new(mut choices: C, length: usize) -> Self {
         let robot = robot(&mut choices);
         let mut start = starts::pioneer(&mut choices);
+        if let Some(robot) = &robot {
+            start.lasers = robot.start_message(start.strategy).lasers;
+        }
         let is_uneven = robot
             .as_ref()
             .is_some_and(|it| it.world().elevation().is_some());
@@ -265,6 +268,7 @@ fn robot(choices: &mut impl Choices) -> Option<Simulator<'static>> {
             OdometryModel::Noisy(OdometryNoise::default())
         },
         people: if is_flat && choices.once_in(6) { 4 } else { 0 },
+        lidars: lidars(choices),
         ..SimConfig::default()
     };
     let alone = SimConfig {
@@ -274,6 +278,16 @@ fn robot(choices: &mut impl Choices) -> Option<Simulator<'static>> {
     // People may find no room; then there are none.
     let robot = Simulator::new(world, config).or_else(|_| Simulator::new(world, alone));
     robot.ok()
+}
+
+/// Returns the usual lidars, of which the level one may turn while the robot moves.
+fn lidars(choices: &mut impl Choices) -> Vec<Lidar> {
+    let mut lidars = usual_lidars();
+    if let Some(level) = lidars.first_mut().filter(|_| choices.once_in(3)) {
+        level.turn_time_s = choices.between(1, 500) as f64 / 1000.0;
+        level.newest_first = choices.once_in(2);
+    }
+    lidars
 }
 
 impl<C: Choices> Host for Plausible<C> {

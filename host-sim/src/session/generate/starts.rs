@@ -214,13 +214,20 @@ fn laser(choices: &mut impl Choices, level: bool) -> Laser {
         bearing_step: step.max(I16F16::DELTA),
         beams,
         range_limit_mm: 1 + choices.below(u64::from(NO_RETURN_MM) - 1) as u16,
+        ..Laser::default()
     };
+    // A level laser may turn.
+    if laser.pitch <= I4F12::lit("0.048") && choices.once_in(2) {
+        laser.turn_time_ms = choices.below(501) as u16;
+        laser.newest_first = choices.once_in(2);
+    }
     if choices.once_in(40) {
         laser.pitch = narrow(choices);
         laser.z = narrow(choices);
         laser.bearing_step = wide(choices);
         laser.beams = choices.bits(16) as u16;
         laser.range_limit_mm = choices.bits(16) as u16;
+        laser.turn_time_ms = choices.bits(16) as u16;
     }
     laser
 }

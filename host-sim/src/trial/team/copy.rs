@@ -23,6 +23,7 @@ use fieldline_planner::geometry::Pose;
 use fieldline_planner::planner::host_copy;
 use fieldline_protocol::message::{Body, Command, Control, INVALID_MM, Observation, Packet, Start};
 
+use super::super::at_once::AtOnce;
 use super::super::map_copy::{Key, MapCopy};
 use crate::link::Link;
 use crate::link::correction::{Classes, MapCorrection, Motion};
@@ -34,6 +35,7 @@ pub(super) struct TeamCopy {
     /// `None` if the device refuses the session's parameters. The map then stays empty.
     config: Option<Config>,
     survey: Direct,
+    at_once: AtOnce,
     of_peers: BTreeSet<Key>,
     moved: Option<Motion>,
 }
@@ -51,6 +53,7 @@ impl TeamCopy {
         Self {
             config: convert::config(&start, &Tuning::DEFAULT).ok(),
             survey,
+            at_once: AtOnce::default(),
             of_peers: BTreeSet::new(),
             moved: None,
         }
@@ -61,6 +64,9 @@ impl TeamCopy {
         let (was_own, before) = (host_copy::has_own_frame(self.survey.state()), self.pose());
         let answered = self.survey.observe(observation);
         debug_assert!(answered.is_ok(), "{answered:?}");
+        if let Some(config) = &self.config {
+            self.at_once.take(config, observation);
+        }
         let has_joined = was_own && !host_copy::has_own_frame(self.survey.state());
         self.moved = has_joined.then(|| Motion::between(&before, &self.pose()));
         if let Some(config) = self.config.as_ref().filter(|_| command.forgot_arrivals) {
@@ -124,11 +130,12 @@ impl MapCopy for TeamCopy {
     }
 
     fn measured(&self, observation: &Observation) -> Observation {
+        let observation = self.at_once.again(observation);
         let mut seen = observation.clone();
         let Some(config) = &self.config else {
             return seen;
         };
-        let Some(input) = convert::input(observation, config.lasers()) else {
+        let Some(input) = convert::input(&observation, config.lasers()) else {
             return seen;
         };
         let measured = host_copy::without_peers(self.survey.state(), config, &input);

@@ -20,17 +20,20 @@ fn laser() -> impl Strategy<Value = Laser> {
         long(),
         long(),
         any::<(u16, u16)>(),
+        any::<(u16, bool)>(),
     )
         .prop_map(
-            |(x, y, z, pitch, first_bearing, bearing_step, (beams, range_limit_mm))| Laser {
+            |(x, y, z, pitch, first_bearing, bearing_step, sweep, turn)| Laser {
                 x,
                 y,
                 z,
                 pitch,
                 first_bearing,
                 bearing_step,
-                beams,
-                range_limit_mm,
+                beams: sweep.0,
+                range_limit_mm: sweep.1,
+                turn_time_ms: turn.0,
+                newest_first: turn.1,
             },
         )
 }

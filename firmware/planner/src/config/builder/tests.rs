@@ -75,6 +75,13 @@ fn lasers_are_counted_and_checked() {
         ..level()
     };
     assert_eq!(with(high), Some(Parameter::LaserHeight));
+    let slow = LaserMount::MAX_TURN_MS;
+    assert_eq!(with(level().turning(slow)), None);
+    assert_eq!(with(level().turning(slow + 1)), Some(Parameter::TurnTime));
+    // The beams of a tilted laser leave its plane when they are moved.
+    let tilted = LaserMount::tilted(0.15, 0.45, 0.349);
+    assert_eq!(with(tilted), None);
+    assert_eq!(with(tilted.turning(1)), Some(Parameter::TurnTime));
     let up = LaserMount {
         pitch_rad: -0.01,
         ..level()

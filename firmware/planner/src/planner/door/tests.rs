@@ -30,6 +30,18 @@ impl Host {
             .map(|(time_ms, pose, _)| (time_ms, pose))
     }
 
+    /// Reports a pose; returns true if the robot's motion since the last report is known.
+    fn knows_motion(&mut self, time_ms: u32, pose: Pose) -> bool {
+        let input = Input {
+            time_ms,
+            pose,
+            velocity: Twist::default(),
+            scans: [&[], &[]],
+        };
+        let admitted = self.door.admit(&self.config, &input);
+        admitted.is_ok_and(|(_, moved)| moved.is_some())
+    }
+
     fn report_all(
         &mut self,
         time_ms: u32,
@@ -43,7 +55,7 @@ impl Host {
             velocity,
             scans: [ranges_mm, &[]],
         };
-        let admitted = self.door.admit(&self.config, &input)?;
+        let (admitted, _) = self.door.admit(&self.config, &input)?;
         Ok((admitted.time_ms, admitted.pose, admitted.velocity))
     }
 }
@@ -211,4 +223,39 @@ fn behind_the_door_no_robot_is_faster_than_it_can_be() {
         // A correction of f32 at 30 km rounds by millimetres.
         assert!(moved_m <= 1.0 + 2.0 * 0.7 * 0.2 + 0.02, "{moved_m} m");
     }
+}
+
+/// The beams of a scan are moved by the motion since the last report, so both must be right.
+#[test]
+fn a_motion_is_known_between_two_right_reports() {
+    let mut host = Host::new();
+    let lasers = [LaserMount::level(0.10, 0.40).turning(200)];
+    host.config = Config::pioneer_3at(lasers.into_iter().collect());
+    assert!(!host.knows_motion(0, at(0.0, 0.0, 0.0)), "the first one");
+    assert!(host.knows_motion(200, at(0.1, 0.0, 0.0)));
+    assert!(
+        !host.knows_motion(400, at(50.0, 0.0, 0.0)),
+        "odometry began anew"
+    );
+    assert!(host.knows_motion(600, at(50.1, 0.0, 0.0)));
+    assert!(
+        !host.knows_motion(300, at(50.2, 0.0, 0.0)),
+        "the clock went back"
+    );
+    assert!(
+        !host.knows_motion(90_000, at(50.3, 0.0, 0.0)),
+        "the clock leapt"
+    );
+    assert!(host.knows_motion(90_200, at(50.4, 0.0, 0.1)));
+    assert!(
+        !host.knows_motion(90_400, at(f32::NAN, 0.0, 0.1)),
+        "refused"
+    );
+    assert!(host.knows_motion(90_600, at(50.5, 0.0, 0.1)));
+    assert!(!host.knows_motion(90_800, at(50.5, 0.0, 0.1)), "it stands");
+    host.config = Config::pioneer_3at([LaserMount::level(0.10, 0.40)].into_iter().collect());
+    assert!(
+        !host.knows_motion(91_000, at(50.6, 0.0, 0.1)),
+        "no scan needs it"
+    );
 }

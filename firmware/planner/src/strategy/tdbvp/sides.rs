@@ -146,6 +146,8 @@ mod tests {
         bearing_step_rad: core::f32::consts::PI / 180.0,
         beams: 181,
         range_limit_mm: 12_000,
+        turn_time_ms: 0,
+        newest_first: false,
     };
 
     /// A scan with walls at 1 m, and nothing within range on the open sides.
