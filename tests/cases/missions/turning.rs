@@ -6,8 +6,8 @@
 //! | `100 ms`, `200 ms`, told | takes so long for a turn | the turn time |
 //! | the same, untold | as above | 0 |
 //!
-//! Odometry is noisy and corrected. `golden/turning.txt` has one seed, `golden/turning-full.txt`
-//! ten, a row for each world and setting. What must hold of what is told: all is explored, nothing
+//! Odometry is noisy and corrected. `golden/turning.txt` has one seed of the first two worlds,
+//! `golden/turning-full.txt` ten of each, a row for each world and setting. What must hold of what is told: all is explored, nothing
 //! is touched, and the mean error is small. What is untold shows what the device would do without.
 
 use fieldline_tests::golden;
@@ -178,7 +178,10 @@ fn summary(jobs: &[Job<'_>], reports: &[Report], seeds: usize) -> Table {
 #[test]
 fn a_turn_that_is_told_costs_nothing() {
     let worlds = worlds();
-    let mut all: Vec<Job<'_>> = worlds.iter().flat_map(|world| jobs(world, 0..1)).collect();
+    let few = worlds.iter().take(2);
+    let mut all: Vec<Job<'_>> = few.flat_map(|world| jobs(world, 0..1)).collect();
+    // What is untold takes long in the end: the map is made of ghosts.
+    all.retain(|job| job.told || job.turn_ms < 200);
     all.extend([true, false].map(|told| Job {
         lidar: "450 clockwise",
         robot: clockwise(100),
