@@ -9,6 +9,12 @@ pub(crate) fn ones(mut word: u32) -> impl Iterator<Item = u32> {
     })
 }
 
+/// Returns the number of set bits. The core has no instruction for it, so it is not inlined.
+#[inline(never)]
+pub(crate) const fn count(word: u32) -> u32 {
+    word.count_ones()
+}
+
 /// Returns the positions of a 64-bit word's set bits, lowest first.
 ///
 /// It is a function of its own because 64-bit words cost twice as much on a 32-bit core.

@@ -21,7 +21,7 @@
 #[cfg(test)]
 mod tests;
 
-use crate::grid::bits::ones;
+use crate::grid::bits::{count, ones};
 use crate::grid::{at, masked, masked_mut};
 use crate::map::tile::{Cells, Visited};
 use crate::map::versions::{News, Version};
@@ -186,26 +186,28 @@ impl<'a> Code<'a> {
     }
 
     /// Returns the number of mixed blocks before a block, 0 to 63.
+    #[inline(never)]
     fn mixed_before(self, block: usize) -> usize {
         let [first, second] = [self.word(MIXED), self.word(MIXED + 1)];
         let below = |bits: usize| (1_u32 << (bits % 32)) - 1;
         let count = if block < 32 {
-            (first & below(block)).count_ones()
+            count(first & below(block))
         } else {
-            first.count_ones() + (second & below(block)).count_ones()
+            count(first) + count(second & below(block))
         };
         count as usize
     }
 
     /// Returns where the trail begins.
     fn trail_at(self) -> usize {
-        let mixed = [MIXED, MIXED + 1].map(|place| self.word(place).count_ones());
+        let mixed = [MIXED, MIXED + 1].map(|place| count(self.word(place)));
         HEAD + mixed.into_iter().sum::<u32>() as usize
     }
 
     /// Returns the number of words.
+    #[inline(never)]
     pub(super) fn length(self) -> usize {
-        let rows = (self.word(0) >> 16).count_ones();
+        let rows = count(self.word(0) >> 16);
         self.trail_at() + rows.div_ceil(2) as usize
     }
 
@@ -232,12 +234,14 @@ impl<'a> Code<'a> {
     }
 
     /// Returns the low and the high bits of a row.
+    #[inline(never)]
     pub(super) fn row(self, row: usize) -> [u32; 2] {
         let rows = self.block_row(row / BLOCK);
         rows.map(|plane| *masked(&plane, row % BLOCK))
     }
 
     /// Returns the low and the high bit of a cell's class.
+    #[inline(never)]
     pub(super) fn class_bits(self, row: usize, column: u32) -> [u32; 2] {
         let (block_row, across) = (row / BLOCK, column / BLOCK as u32);
         if self.bits(MIXED, block_row) >> across & 1 == 0 {
@@ -250,23 +254,25 @@ impl<'a> Code<'a> {
     }
 
     /// Returns the number of cells that were measured.
+    #[inline(never)]
     pub(super) fn known(self) -> u32 {
         let [low, high] = CLASSES;
-        let whole = [0, 1].map(|k| (self.word(low + k) | self.word(high + k)).count_ones());
+        let whole = [0, 1].map(|k| count(self.word(low + k) | self.word(high + k)));
         let mixed = (HEAD..self.trail_at()).map(|place| {
             let word = self.word(place);
-            ((word | word >> 16) & 0xffff).count_ones()
+            count((word | word >> 16) & 0xffff)
         });
         whole.into_iter().sum::<u32>() * (BLOCK * BLOCK) as u32 + mixed.sum::<u32>()
     }
 
     /// Returns a row of the trail.
+    #[inline(never)]
     pub(super) fn trail_row(self, row: usize) -> u16 {
         let rows = self.word(0) >> 16;
         if rows >> row & 1 == 0 {
             return 0;
         }
-        let before = (rows & ((1 << row) - 1)).count_ones() as usize;
+        let before = count(rows & ((1 << row) - 1)) as usize;
         (self.word(self.trail_at() + before / 2) >> (before % 2 * 16)) as u16
     }
 
@@ -286,6 +292,7 @@ impl<'a> Code<'a> {
     }
 
     /// Returns the trail.
+    #[inline(never)]
     pub(super) fn trail(self) -> Visited {
         core::array::from_fn(|row| self.trail_row(row))
     }

@@ -7,7 +7,7 @@
 //! | ground | a tile is compacted | and expanded |
 //! | --- | --- | --- |
 //! | flat | when a page is wanted and none is spare | by the first write |
-//! | uneven | when less than [`LOW_PAGES`] are spare, in [`Tiles::compact`] | there, around the window |
+//! | uneven | in [`Tiles::compact`], when less than [`LOW_PAGES`] are spare | there, near the window |
 //!
 //! On uneven ground the heights of a tile go with its page, and only their owner, a [`SideTable`],
 //! can keep them. So a write to a compact tile finds no room there.
@@ -158,6 +158,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     ///
     /// # Errors
     /// [`NoRoom::Pool`], or [`NoRoom::Later`] if this step has made all the room that it may.
+    #[inline(never)]
     pub(super) fn take_new_page(&mut self) -> Result<usize, NoRoom> {
         if !self.has_spare_page() {
             if !self.has_page() {
@@ -191,6 +192,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     /// # Errors
     /// [`NoRoom::Pool`] if all are compact that can be; [`NoRoom::Later`] if the step has tried
     /// enough of them.
+    #[inline(never)]
     fn make_room(&mut self, pages: usize, side_table: &mut impl SideTable) -> Result<(), NoRoom> {
         while self.free_pages() < pages {
             if self.compacting.tries >= MOST_TRIES {
@@ -263,6 +265,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     ///
     /// # Errors
     /// [`NoRoom::Later`] if there is none in this step.
+    #[inline(never)]
     pub(super) fn expand_to_write(&mut self, tile: (i32, i32)) -> Result<usize, NoRoom> {
         if self.is_lent() {
             return Err(NoRoom::Later);
@@ -282,6 +285,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     ///
     /// # Errors
     /// [`NoRoom`] if the pool is full.
+    #[inline(never)]
     pub(super) fn expand_tile(
         &mut self,
         place: usize,
@@ -316,6 +320,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Forgets a tile. Returns the page that it gave back.
+    #[inline(never)]
     pub(super) fn forget_tile(&mut self, tile: (i32, i32)) -> Option<usize> {
         let page = match self.entry(tile.0, tile.1) {
             Entry::Untouched => return None,

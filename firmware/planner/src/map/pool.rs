@@ -60,6 +60,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Takes a spare page; its content is undefined.
+    #[inline(never)]
     pub(super) fn take_page(&mut self) -> Result<usize, NoRoom> {
         if let Some(page) = self.free.page.checked_sub(1) {
             let page = usize::from(page);
@@ -87,6 +88,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Gives a page back.
+    #[inline(never)]
     pub(super) fn return_page(&mut self, page: usize) {
         let next = u32::from(self.free.page);
         if let Some(link) = self.words_mut(page).first_mut() {
@@ -110,6 +112,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Returns a run of units that are not in use, of a page that is shared or is from now on.
+    #[inline(never)]
     pub(super) fn take_units(&mut self, units: usize) -> Option<usize> {
         let mut at = self.free.shared;
         while let Some(page) = at.checked_sub(1).map(usize::from) {
@@ -128,6 +131,7 @@ impl<const TILES: usize, const SLOTS: usize> Tiles<TILES, SLOTS> {
     }
 
     /// Gives units back. A page without a unit in use is spare.
+    #[inline(never)]
     pub(super) fn return_units(&mut self, unit: usize, units: usize) {
         let page = unit / UNITS;
         let [used, next] = self.share(page);

@@ -4,6 +4,7 @@
 //!
 //! Units: map cells.
 
+use crate::grid::bits::count;
 use crate::grid::{Class, masked, masked_mut};
 use crate::map::code::Code;
 use crate::map::tiles::TILE_ROWS;
@@ -52,23 +53,26 @@ impl Stored<'_> {
     }
 
     /// Returns true if a cell is a negative obstacle.
+    #[inline(never)]
     pub(super) fn has_negative(&self) -> bool {
         self.with_planes(|[low, high]| low.iter().zip(high).any(|(low, high)| low & high != 0))
     }
 
     /// Returns the number of cells that were measured.
+    #[inline(never)]
     pub(super) fn known(&self) -> u32 {
         match self {
             Self::Page { cells, .. } => {
                 let [low, high] = cells;
                 let rows = low.iter().zip(high);
-                rows.map(|(low, high)| (low | high).count_ones()).sum()
+                rows.map(|(low, high)| count(low | high)).sum()
             }
             Self::Coded(code) => code.known(),
         }
     }
 
     /// Returns the cells.
+    #[inline(never)]
     pub(super) fn cells(&self) -> Cells {
         match self {
             Self::Page { cells, .. } => **cells,
@@ -77,6 +81,7 @@ impl Stored<'_> {
     }
 
     /// Returns the trail.
+    #[inline(never)]
     pub(super) fn trail(&self) -> Visited {
         match self {
             Self::Page { trail, .. } => **trail,
