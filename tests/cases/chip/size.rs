@@ -19,8 +19,8 @@ use fieldline_tests::{costs, emulator, golden};
 /// drives on them. A start that touches nothing took 2 KB. One search for goals in every order gave
 /// back 5 KB. What lies around a robot that was reset took 5 KB: it is back in a door as narrow as
 /// itself. Bringing the beams of a lidar that turns to one instant took 3 KB: the hosts of such
-/// lidars know no odometry between two scans better than the chip, and most lidars turn. Coded tiles
-/// took 11 KB: half as much floor again fits into the memory.
+/// lidars know no odometry between two scans better than the chip, and most lidars turn. Coded
+/// tiles took 11 KB: half as much floor again fits into the memory.
 const MOST_FLASH: u64 = 381 * 1024;
 /// The chip's main memory.
 const SRAM: Range<u64> = 0x2000_0000..0x2002_0000;

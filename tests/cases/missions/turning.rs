@@ -7,8 +7,9 @@
 //! | the same, untold | as above | 0 |
 //!
 //! Odometry is noisy and corrected. `golden/turning.txt` has one seed of the first two worlds,
-//! `golden/turning-full.txt` ten of each, a row for each world and setting. What must hold of what is
-//! told: all is explored, nothing is touched, and the mean error is small. What is untold shows what the device would do without.
+//! `golden/turning-full.txt` ten of each, a row for each world and setting. What must hold of what
+//! is told: all is explored, nothing is touched, and the mean error is small. What is untold shows
+//! what the device would do without.
 
 use fieldline_tests::golden;
 use fieldline_tests::odometry;

@@ -7,7 +7,7 @@
 //! | ground | a tile is compacted | and expanded |
 //! | --- | --- | --- |
 //! | flat | when a page is wanted and none is spare | by the first write |
-//! | uneven | in [`Tiles::compact`], when less than [`LOW_PAGES`] are spare | there, near the window |
+//! | uneven | in [`Tiles::compact`], with fewer than [`LOW_PAGES`] | there, near the window |
 //!
 //! On uneven ground the heights of a tile go with its page, and only their owner, a [`SideTable`],
 //! can keep them. So a write to a compact tile finds no room there.
