@@ -202,19 +202,21 @@ fn pose(location: &Location) -> Pose {
 
 #[cfg(test)]
 mod tests {
+    use fieldline_device::SLOTS;
+
     use super::super::carmen::Beams;
     use super::*;
     use crate::link::direct::Direct;
 
     /// Returns a log of scans at the same time, a metre and a half apart along a corridor that is
-    /// as long as the path, and without end for a laser.
-    fn log(scans: u32) -> Vec<LogScan> {
+    /// as long as the path, and without end for a laser; its walls are so far to the sides.
+    fn log(scans: u32, aside_m: f64) -> Vec<LogScan> {
         let scan = |k: u32| {
             let beams = Beams::half_turn(181);
             let place = [1.5 * f64::from(k), 0.0, 0.0];
             let range = |beam: u32| {
                 let angle = beams.first_rad + f64::from(beam) * beams.step_rad;
-                (1.2 / angle.sin().abs().max(1e-3)).min(80.0)
+                (aside_m / angle.sin().abs().max(1e-3)).min(80.0)
             };
             LogScan {
                 line: k as usize + 1,
@@ -231,7 +233,7 @@ mod tests {
 
     #[test]
     fn scans_far_apart_with_equal_times_are_no_jumps_of_odometry() {
-        let scans = log(20);
+        let scans = log(20, 1.2);
         let own = odometry(&scans, None, 0);
         let laser = LogLaser::of(&scans);
         let replayed = run(&laser, &scans, &own, &mut Direct::new(), None, &mut |_| {
@@ -247,14 +249,14 @@ mod tests {
 
     #[test]
     fn a_map_that_has_no_room_says_at_which_scan() {
-        // Two tiles across, one for each 3.2 m.
-        let scans = log(300);
+        // Four tiles across, one for each 3.2 m.
+        let scans = log(250, 4.5);
         let own = odometry(&scans, None, 0);
         let laser = LogLaser::of(&scans);
         let full = map_full_at(&laser, &scans, &own, &Tuning::DEFAULT).unwrap();
-        let tiles = 2.0 * (1.5 * full as f64 + 12.0) / 3.2;
+        let tiles = 4.0 * (1.5 * full as f64 + 12.0) / 3.2;
         assert!(
-            (tiles - TILES as f64).abs() < 12.0,
+            (tiles - SLOTS as f64).abs() < 24.0,
             "scan {full}: {tiles} tiles"
         );
     }

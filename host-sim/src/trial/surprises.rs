@@ -106,22 +106,22 @@ mod tests {
             y_m: 5.0,
             ..Start::default()
         };
-        // 60 m squared are 19 tiles a side.
+        // 70 m squared are 22 tiles a side.
         let hall = |free: i64| {
-            let mut grid = Occupancy::filled(300, 300, 0.2, [0.0, 0.0], Class::Unknown);
-            for j in 0..300 {
+            let mut grid = Occupancy::filled(350, 350, 0.2, [0.0, 0.0], Class::Unknown);
+            for j in 0..350 {
                 for i in 0..free {
                     grid.set(GridCell { i, j }, Class::Free);
                 }
             }
             World::flat("hall", grid, vec![start])
         };
-        let told = surprises(&Mission::default(), &hall(300));
+        let told = surprises(&Mission::default(), &hall(350));
         assert!(
-            told.len() == 1 && told[0].contains("about 361 tiles"),
+            told.len() == 1 && told[0].contains("about 484 tiles"),
             "{told:?}"
         );
-        // A part of the picture is unknown: 10 tiles by 19.
+        // A part of the picture is unknown: 10 tiles by 22.
         assert!(surprises(&Mission::default(), &hall(160)).is_empty());
     }
 }
