@@ -52,6 +52,17 @@ impl Setting {
         }
     }
 
+    /// Returns the usual mission with this odometry.
+    #[must_use]
+    pub fn mission(self, seed: u64) -> Mission {
+        Mission {
+            seed,
+            odometry: self.odometry,
+            localise: self.localise,
+            ..Mission::default()
+        }
+    }
+
     /// Returns the true pose, then each profile corrected and as it is.
     #[must_use]
     pub fn beside_truth(noise: &[OdometryProfile]) -> Vec<Self> {

@@ -254,6 +254,7 @@ mod tests {
         let own = odometry(&scans, None, 0);
         let laser = LogLaser::of(&scans);
         let full = map_full_at(&laser, &scans, &own, &Tuning::DEFAULT).unwrap();
+        // Six columns of tiles more or less.
         let tiles = 4.0 * (1.5 * full as f64 + 12.0) / 3.2;
         assert!(
             (tiles - SLOTS as f64).abs() < 24.0,

@@ -4,6 +4,8 @@
 use fieldline_protocol::message::{
     Control, Fault, INVALID_MM, Observation, Status, Strategy, Twist,
 };
+use fieldline_tests::odometry::Setting;
+use fieldline_tests::runs::explored;
 use fieldline_tests::worlds;
 use host_sim::baseline::{Bvp, Session};
 use host_sim::link::Link;
@@ -58,7 +60,7 @@ fn a_world_larger_than_the_map_is_a_fault_and_its_exits_are_listed() {
     assert!(exits.contains(&"out-of-bounds"), "{exits:?}");
     // 368 tiles are 3,768 m² of 6,200 m².
     assert!(
-        report.coverage.fraction > 0.5,
+        report.coverage.fraction > 0.55,
         "{}",
         report.coverage.fraction
     );
@@ -66,22 +68,11 @@ fn a_world_larger_than_the_map_is_a_fault_and_its_exits_are_listed() {
 }
 
 /// Beyond the map there is nothing to match a scan with: a robot that drove on there would lose its
-/// pose.
-#[test]
-fn a_robot_whose_map_is_full_does_not_drive_on_beyond_it() {
-    // 54 m, and a map of 250 tiles.
-    let world = pillars(270);
+/// pose. `device` boots a device.
+fn keeps_to_its_map<L: Link>(world: &World, device: impl Fn() -> L) {
     for seed in 0..2 {
-        let mission = Mission {
-            seed,
-            odometry: OdometryProfile::Noisy,
-            localise: true,
-            ..Mission::default()
-        };
-        let device = LocalDevice::<200, 250>::sized();
-        let mut link = Endpoint::new(device, RetryPolicy::VIRTUAL, 1);
-        let run = explore(&mission, &world, &mut link, &mut ());
-        let (report, record) = run.expect("the start is free");
+        let mission = Setting::corrected(OdometryProfile::Noisy).mission(seed);
+        let (report, record) = explored(&mission, world, &mut device());
         assert_eq!(report.outcome.reason, "map-full");
         let error_m = report.localization.max_error_m.unwrap_or(f64::MAX);
         assert!(error_m < 0.3, "seed {seed}: {error_m} m");
@@ -93,6 +84,24 @@ fn a_robot_whose_map_is_full_does_not_drive_on_beyond_it() {
             .filter(|step| !record.tiles.contains_key(&place(step)));
         let beyond_s = 0.2 * beyond.count() as f64;
         assert!(beyond_s < 10.0, "seed {seed}: {beyond_s} s");
+    }
+}
+
+/// A hall of 54 m, and a map of 250 tiles.
+#[test]
+fn a_robot_whose_map_is_full_does_not_drive_on_beyond_it() {
+    keeps_to_its_map(&pillars(270), || {
+        Endpoint::new(LocalDevice::<200, 250>::sized(), RetryPolicy::VIRTUAL, 1)
+    });
+}
+
+mod known_red {
+    use super::*;
+
+    #[test]
+    #[ignore = "known to fail: in a hall of 80 m one of two robots is 0.62 m wrong at the end"]
+    fn a_robot_whose_whole_map_is_full_does_not_drive_on_beyond_it() {
+        keeps_to_its_map(&pillars(400), Direct::new);
     }
 }
 

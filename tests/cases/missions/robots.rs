@@ -12,13 +12,14 @@
 //! error is small. `golden/robots.txt` has one seed of it. `golden/robots-full.txt` has two seeds
 //! of three worlds with every pair; there some runs fail, and the table says which.
 
+use fieldline_tests::odometry::{self, Setting};
 use fieldline_tests::runs::{explored, in_parallel};
 use fieldline_tests::table::number;
-use fieldline_tests::{golden, odometry, worlds};
+use fieldline_tests::{golden, worlds};
 use host_sim::link::direct::Direct;
 use host_sim::report::Report;
 use host_sim::robot::{Footprint, RobotSpec, presets};
-use host_sim::trial::mission::{Mission, OdometryProfile};
+use host_sim::trial::mission::OdometryProfile;
 use host_sim::world::World;
 
 /// Lidars, as after `--laser`.
@@ -42,13 +43,8 @@ struct Job<'a> {
 
 impl Job<'_> {
     fn go(&self) -> Report {
-        let mission = Mission {
-            seed: self.seed,
-            odometry: OdometryProfile::Noisy,
-            localise: true,
-            ..Mission::default()
-        };
-        let mission = mission.with_robot(&self.robot);
+        let noisy = Setting::corrected(OdometryProfile::Noisy);
+        let mission = noisy.mission(self.seed).with_robot(&self.robot);
         explored(&mission, self.world, &mut Direct::new()).0
     }
 }

@@ -12,13 +12,13 @@
 //! what the device would do without.
 
 use fieldline_tests::golden;
-use fieldline_tests::odometry;
+use fieldline_tests::odometry::{self, Setting};
 use fieldline_tests::runs::{assert_faultless, explored, in_parallel};
 use fieldline_tests::table::{Table, number};
 use host_sim::link::direct::Direct;
 use host_sim::report::Report;
-use host_sim::robot::{Lidar, Miswiring, RobotSpec};
-use host_sim::trial::mission::{Mission, OdometryProfile};
+use host_sim::robot::{Lidar, RobotSpec};
+use host_sim::trial::mission::OdometryProfile;
 use host_sim::world::World;
 
 /// Worlds: rooms, round walls, narrow ways, and corridors.
@@ -48,17 +48,9 @@ struct Job<'a> {
 
 impl Job<'_> {
     fn go(&self) -> Report {
-        let mission = Mission {
-            seed: self.seed,
-            odometry: OdometryProfile::Noisy,
-            localise: true,
-            miswiring: Miswiring {
-                turn_time_untold: !self.told,
-                ..Miswiring::default()
-            },
-            ..Mission::default()
-        };
-        let mission = mission.with_robot(&self.robot);
+        let noisy = Setting::corrected(OdometryProfile::Noisy);
+        let mut mission = noisy.mission(self.seed).with_robot(&self.robot);
+        mission.miswiring.turn_time_untold = !self.told;
         explored(&mission, self.world, &mut Direct::new()).0
     }
 

@@ -28,13 +28,15 @@ use crate::map::versions::{News, Version};
 
 /// Words before the mixed blocks.
 const HEAD: usize = 8;
-/// Where the bits of the mixed blocks begin, and those of the low and the high classes.
+/// The word where the bits of the mixed blocks begin.
 const MIXED: usize = 2;
+/// The words where the low and the high bits of the classes begin.
 const CLASSES: [usize; 2] = [4, 6];
-/// Side of a block, cells; and of a tile, blocks.
+/// Side of a block, cells.
 const BLOCK: usize = 4;
+/// Side of a tile, blocks.
 const ACROSS: usize = 8;
-/// Most words of a code: with more a page is as good.
+/// Most words of a code, three quarters of a page: what a longer one leaves holds few others.
 pub(super) const MOST_WORDS: usize = 48;
 
 /// Four rows of cells: the low and the high bits.

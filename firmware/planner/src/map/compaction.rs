@@ -36,13 +36,14 @@ pub(super) const CODED_FLAG: u16 = 0x8000;
 const LOW_PAGES: usize = 24;
 /// Pages kept back, once there are compact tiles, to expand those that are written.
 const RESERVED_PAGES: usize = 10;
-/// Tiles up to so many columns and rows from the robot's tile stay as they are: the windows of
-/// evidence and of heights are there.
+/// Tiles up to so many columns and rows from the robot's tile stay as they are: most of the windows
+/// of evidence and of heights lies there.
 const NEAR: i32 = 2;
 /// Margin around the window in which tiles are expanded, cells: the window is there in one or two
 /// steps.
 const EXPAND_MARGIN: i32 = 2;
-/// Most tiles that a step compacts or tries to. New tiles of a step are fewer.
+/// Most tiles that a step compacts or tries to, so that a step has a bound. What then finds no room
+/// finds it in the next one.
 const MOST_TRIES: u16 = 48;
 /// A plane of ones.
 pub(super) static ONES: Plane = [u32::MAX; TILE_ROWS];
