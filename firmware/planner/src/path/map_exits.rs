@@ -5,72 +5,104 @@
 //! robot ([`Reachability`]). Where the flood comes to the side of a tile behind which nothing can
 //! be stored, there is an exit.
 //!
-//! Computed once, at the end of a run.
+//! The search runs once, at the end of a run, in instalments while the robot stands.
 //!
 //! Units: coarse cells of 20 cm, 16 × 16 in a tile.
 
 use crate::geometry::Cell;
 use crate::grid::{SIDES, Tiling};
+use crate::map::Tiles;
 use crate::map::tiles::NoRoom;
-use crate::map::{Map, Tiles};
 use crate::roadmap::configuration_space::Footprint;
+use crate::roadmap::flooding::Flooding;
 use crate::roadmap::reachability::Reachability;
 use crate::roadmap::skeleton::Frame;
 
-/// Returns which room the map lacks for what the robot can reach; `None` if none, or if the map
-/// refused nothing so far. Calls `found` with every exit, see [`for_each_exit`].
-pub(crate) fn missing_room<const TILES: usize, const SLOTS: usize>(
-    map: &Map<TILES, SLOTS>,
-    footprint: &Footprint,
-    robot: Cell,
-    scratch: &mut [u32],
-    mut found: impl FnMut(Cell),
-) -> Option<NoRoom> {
-    if !map.out_of_box() && !map.pool_full() {
-        return None;
-    }
-    let mut missing = None;
-    for_each_exit(map.tiles(), footprint, robot, scratch, |cell, room| {
-        missing = Some(room);
-        found(cell);
-    });
-    missing
+/// The inputs of a search. They are the same for all its instalments, except for what the map
+/// learns meanwhile.
+#[derive(Debug)]
+pub(crate) struct Inputs<'a, const TILES: usize, const SLOTS: usize> {
+    /// The map.
+    pub(crate) tiles: &'a Tiles<TILES, SLOTS>,
+    /// The tiles that are searched, and their place.
+    pub(crate) tiling: Tiling<'a>,
+    pub(crate) frame: Frame,
+    /// The disc that paths are planned for.
+    pub(crate) footprint: &'a Footprint,
+    /// Where the robot stands.
+    pub(crate) robot: Cell,
 }
 
-/// Calls `found` with every exit and the room that is missing there. An exit is the least map cell
-/// of an explored coarse cell that the robot can reach and that borders on a tile without room. If
-/// the robot stands on such a tile, its own cell is the only exit.
-///
-/// `scratch` may hold anything. With fewer than
-/// [`scratch_words`](crate::roadmap::reachability::scratch_words) words no exit is found.
-fn for_each_exit<const TILES: usize, const SLOTS: usize>(
-    tiles: &Tiles<TILES, SLOTS>,
-    footprint: &Footprint,
-    robot: Cell,
-    scratch: &mut [u32],
-    mut found: impl FnMut(Cell, NoRoom),
-) {
-    if tiles.keys().is_empty() {
-        return;
+/// A search in progress. Its lent memory holds what the robot can reach.
+#[derive(Debug)]
+pub(crate) struct Search {
+    is_running: bool,
+    flooding: Flooding,
+}
+
+impl Search {
+    /// Makes a search that is over.
+    pub(crate) const fn new() -> Self {
+        Self {
+            is_running: false,
+            flooding: Flooding::FIRST,
+        }
     }
-    if let Err(room) = tiles.room(robot.x >> 5, robot.y >> 5) {
-        // The robot has left the map.
-        return found(robot, room);
+
+    /// Begins a search. Until its first instalment others may use the lent memory.
+    pub(crate) const fn begin(&mut self) {
+        (self.is_running, self.flooding) = (true, Flooding::FIRST);
     }
-    let (frame, tiling) = (Frame::of(tiles), Tiling::new(tiles.keys()));
-    let Some(mut reachability) = Reachability::new(frame, tiling, scratch) else {
-        return;
-    };
-    for place in 0..tiles.keys().len() {
-        reachability.load(tiles, footprint, place);
+
+    /// Returns true if the search needs another instalment.
+    pub(crate) const fn is_running(&self) -> bool {
+        self.is_running
     }
-    reachability.start(robot);
-    while !reachability.spread(u32::MAX) {}
-    for &key in tiles.keys() {
-        let (x, y) = frame.tile(key);
-        for side in SIDES {
-            if let Err(room) = tiles.room(x + side.0, y + side.1) {
-                reachability.along(key, side, |cell| found(cell, room));
+
+    /// Runs an instalment. Once the last one has run, calls `found` with every exit and the room
+    /// that is missing there. An exit is the least map cell of an explored coarse cell that the
+    /// robot can reach and that borders on a tile without room. If the robot stands on such a tile,
+    /// its own cell is the only exit.
+    ///
+    /// `scratch` must keep its values from the first instalment to the last. With fewer than
+    /// [`scratch_words`](crate::roadmap::reachability::scratch_words) words no exit is found.
+    pub(crate) fn advance<const TILES: usize, const SLOTS: usize>(
+        &mut self,
+        inputs: &Inputs<'_, TILES, SLOTS>,
+        scratch: &mut [u32],
+        mut found: impl FnMut(Cell, NoRoom),
+    ) {
+        if !core::mem::take(&mut self.is_running) {
+            return;
+        }
+        let robot = inputs.robot;
+        if let Err(room) = inputs.tiles.room(robot.x >> 5, robot.y >> 5) {
+            // The robot has left the map.
+            return found(robot, room);
+        }
+        let Some(mut reachability) = Reachability::resume(inputs.frame, inputs.tiling, scratch)
+        else {
+            return;
+        };
+        let start = |reachability: &mut Reachability<'_>| reachability.start(robot);
+        self.flooding
+            .advance(inputs.tiles, inputs.footprint, &mut reachability, start);
+        match self.flooding {
+            Flooding::Load(_) | Flooding::Spread => self.is_running = true,
+            Flooding::Over => inputs.for_each_exit(&reachability, found),
+            Flooding::Tight => {}
+        }
+    }
+}
+
+impl<const TILES: usize, const SLOTS: usize> Inputs<'_, TILES, SLOTS> {
+    fn for_each_exit(&self, reachability: &Reachability<'_>, mut found: impl FnMut(Cell, NoRoom)) {
+        for &key in self.tiling.keys() {
+            let (x, y) = self.frame.tile(key);
+            for side in SIDES {
+                if let Err(room) = self.tiles.room(x + side.0, y + side.1) {
+                    reachability.along(key, side, |cell| found(cell, room));
+                }
             }
         }
     }
@@ -81,13 +113,14 @@ mod tests {
     use std::boxed::Box;
     use std::vec::Vec;
 
-    use super::for_each_exit;
+    use super::{Inputs, Search};
     use crate::geometry::Cell;
-    use crate::grid::TileKey;
+    use crate::grid::{TileKey, Tiling};
     use crate::map::tiles::{NoRoom, TILE_SIDE};
     use crate::map::{Class, Tiles};
     use crate::roadmap::configuration_space::Footprint;
     use crate::roadmap::reachability::scratch_words;
+    use crate::roadmap::skeleton::Frame;
 
     const SLOTS: usize = 24;
 
@@ -129,19 +162,32 @@ mod tests {
         (tiles, robot.expect("a robot"))
     }
 
-    fn found(tiles: &Tiles<20, SLOTS>, robot: Cell) -> Vec<(Cell, NoRoom)> {
+    /// Searches in memory of so many words.
+    fn found_in<const PAGES: usize>(
+        words: usize,
+        tiles: &Tiles<PAGES, SLOTS>,
+        robot: Cell,
+    ) -> Vec<(Cell, NoRoom)> {
         let mut list = Vec::new();
-        let mut scratch = [0xdead_beef; scratch_words(SLOTS)];
-        for_each_exit(
+        let mut scratch = std::vec![0xdead_beef; words];
+        let inputs = Inputs {
             tiles,
-            &Footprint::new(0.3),
+            tiling: Tiling::new(tiles.keys()),
+            frame: Frame::of(tiles),
+            footprint: &Footprint::new(0.3),
             robot,
-            &mut scratch,
-            |cell, why| {
-                list.push((cell, why));
-            },
-        );
+        };
+        let mut search = Search::new();
+        search.begin();
+        while search.is_running() {
+            assert!(list.is_empty(), "exits of a flood that is not over");
+            search.advance(&inputs, &mut scratch, |cell, why| list.push((cell, why)));
+        }
         list
+    }
+
+    fn found<const PAGES: usize>(tiles: &Tiles<PAGES, SLOTS>, robot: Cell) -> Vec<(Cell, NoRoom)> {
+        found_in(scratch_words(SLOTS), tiles, robot)
     }
 
     /// The plan of a room that fills the whole box; `east` is a part of its east wall.
@@ -237,18 +283,7 @@ mod tests {
         }
         let beyond = Cell { x: 40, y: 40 };
         assert_eq!(tiles.set(beyond, Class::Free), Err(NoRoom::Pool));
-        let mut list = Vec::new();
-        let mut scratch = [0; scratch_words(SLOTS)];
-        let robot = Cell { x: 10, y: 10 };
-        for_each_exit(
-            &tiles,
-            &Footprint::new(0.3),
-            robot,
-            &mut scratch,
-            |cell, why| {
-                list.push((cell, why));
-            },
-        );
+        let list = found(&tiles, Cell { x: 10, y: 10 });
         assert!(!list.is_empty());
         assert!(
             list.iter()
@@ -268,11 +303,8 @@ mod tests {
     }
 
     #[test]
-    fn without_memory_or_map_nothing_is_found() {
+    fn without_memory_nothing_is_found() {
         let (tiles, robot) = drawn(&["R"]);
-        let mut list = Vec::new();
-        let push = |cell, why| list.push((cell, why));
-        for_each_exit(&tiles, &Footprint::new(0.3), robot, &mut [0; 1], push);
-        assert!(list.is_empty());
+        assert_eq!(found_in(1, &tiles, robot), []);
     }
 }

@@ -30,6 +30,7 @@ use crate::path::gain::View;
 use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::utility::{GoalOrder, utility};
 use crate::roadmap::configuration_space::Footprint;
+use crate::roadmap::flooding::Flooding;
 use crate::roadmap::reachability::Reachability;
 use crate::roadmap::skeleton::Frame;
 use look::look_back;
@@ -42,12 +43,9 @@ const ALONG: u16 = 32 / BLOCK as u16;
 const LEAST_EDGE: u32 = 3;
 /// Gaps of a block from which rays start.
 const TRIES: u32 = 4;
-/// Limits of an instalment: tiles loaded, tiles flooded, cells on rays. With more cells a step
-/// takes too long (measured: docs/MEASURED.md, "Instalments of a search for viewpoints"). The last
-/// block may add [`MOST_OVER`] cells and a gap's: `RAYS · (MOST_ON + MOST_BACK)` = 6,000.
-const TILES_PER_STEP: u16 = 120;
-/// A flood of a tile takes some 3,000 instructions.
-const FLOODS_PER_STEP: u32 = 300;
+/// Limit of an instalment after the flood, cells on rays. With more cells a step takes too long
+/// (measured: docs/MEASURED.md, "Instalments of a search for viewpoints"). The last block may add
+/// [`MOST_OVER`] cells and a gap's: `RAYS · (MOST_ON + MOST_BACK)` = 6,000.
 const CELLS_PER_STEP: i32 = 20_000;
 /// Cells on rays by which a block may exceed an instalment. Beyond them the next one goes on at the
 /// block's next gap.
@@ -102,8 +100,6 @@ pub(crate) struct Inputs<'a, const TILES: usize, const SLOTS: usize> {
 enum Phase {
     #[default]
     Idle,
-    /// Loads the tile at place n next.
-    Load(u16),
     Flood,
     /// Searches block number n next, from the gap with the second number on.
     Scan(u16, u8),
@@ -113,6 +109,7 @@ enum Phase {
 #[derive(Debug)]
 pub(crate) struct Search {
     phase: Phase,
+    flooding: Flooding,
     /// The robot's disc reaches nothing: it stands in a narrow place.
     tight: bool,
     found: bool,
@@ -125,6 +122,7 @@ impl Search {
     pub(crate) const fn new() -> Self {
         Self {
             phase: Phase::Idle,
+            flooding: Flooding::FIRST,
             tight: false,
             found: false,
             score: 0.0,
@@ -144,7 +142,8 @@ impl Search {
     /// Begins a search. Its first instalment may come later: until then others may use the scratch
     /// memory.
     pub(crate) fn begin(&mut self) {
-        (self.phase, self.tight, self.found) = (Phase::Load(0), false, false);
+        (self.phase, self.flooding) = (Phase::Flood, Flooding::FIRST);
+        (self.tight, self.found) = (false, false);
     }
 
     /// Runs an instalment. Gaps that were given up do not count; those that are not worth the trip
@@ -162,17 +161,9 @@ impl Search {
             self.phase = Phase::Idle;
             return Found::Nothing;
         };
-        if self.phase == Phase::Load(0) {
-            reachability.clear();
-        }
         match self.phase {
             Phase::Idle => return Found::Nothing,
-            Phase::Load(tile) => self.load(inputs, &mut reachability, tile),
-            Phase::Flood => {
-                if reachability.spread(FLOODS_PER_STEP) {
-                    self.phase = Phase::Scan(0, 0);
-                }
-            }
+            Phase::Flood => self.flood(inputs, &mut reachability),
             Phase::Scan(block, gap) => {
                 self.scan(inputs, &reachability, residual, (block, gap));
             }
@@ -184,29 +175,25 @@ impl Search {
         }
     }
 
-    fn load<const TILES: usize, const SLOTS: usize>(
+    fn flood<const TILES: usize, const SLOTS: usize>(
         &mut self,
         inputs: &Inputs<'_, TILES, SLOTS>,
         reachability: &mut Reachability<'_>,
-        first: u16,
     ) {
         let [wide, narrow] = inputs.footprints;
         let footprint = if self.tight { narrow } else { wide };
-        for place in usize::from(first)..usize::from(first + TILES_PER_STEP) {
-            if place < inputs.tiling.keys().len() {
-                reachability.load(inputs.tiles, footprint, place);
-                continue;
-            }
+        let start = |reachability: &mut Reachability<'_>| {
             inputs.blocked.close(inputs.robot, reachability);
-            self.phase = match (reachability.start(inputs.robot), self.tight) {
-                (true, _) => Phase::Flood,
-                (false, false) => Phase::Load(0),
-                (false, true) => Phase::Idle,
-            };
-            self.tight = true;
-            return;
+            reachability.start(inputs.robot)
+        };
+        self.flooding
+            .advance(inputs.tiles, footprint, reachability, start);
+        match (self.flooding, self.tight) {
+            (Flooding::Over, _) => self.phase = Phase::Scan(0, 0),
+            (Flooding::Tight, true) => self.phase = Phase::Idle,
+            (Flooding::Tight, false) => (self.tight, self.flooding) = (true, Flooding::FIRST),
+            (Flooding::Load(_) | Flooding::Spread, _) => {}
         }
-        self.phase = Phase::Load(first + TILES_PER_STEP);
     }
 
     fn scan<const TILES: usize, const SLOTS: usize>(

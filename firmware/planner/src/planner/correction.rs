@@ -47,7 +47,7 @@ use crate::config::Config;
 use crate::geometry::{Cell, MapFromOdom, MapPose, Point};
 use crate::grid::{SPARE_WORDS, Shift, Shifts, shift};
 use crate::math;
-use crate::path::viewpoint;
+use crate::path::{map_exits, viewpoint};
 use crate::planner::state::State;
 use crate::planner::workspace::Workspace;
 use crate::strategy::Strategist;
@@ -308,7 +308,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.viewpoints = viewpoint::Search::new();
         self.drive.correct(&motion);
         self.has_new_skeleton = false;
-        self.ends = false;
+        self.exits = map_exits::Search::new();
         self.correcting.progress()
     }
 }

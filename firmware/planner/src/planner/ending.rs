@@ -7,7 +7,7 @@ use crate::field::local_grid::LocalGrid;
 use crate::geometry::Cell;
 use crate::map::Tiles;
 use crate::map::tiles::NoRoom;
-use crate::path::map_exits::missing_room;
+use crate::path::map_exits::Inputs;
 use crate::planner::step::Step;
 use crate::status::{Fault, Finish, Status};
 
@@ -16,16 +16,14 @@ const BOX_CELLS: u32 = 100;
 
 impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
     /// Ends the exploration in this step: lists the residual frontiers and sets the status, or
-    /// begins the patrol.
-    pub(super) fn end_now(&mut self) {
+    /// begins the patrol. `missing` is the room that the map lacks for what the robot can reach.
+    pub(super) fn end_now(&mut self, missing: Option<NoRoom>) {
         const DONE: Status = Status::Finished(Finish::Explored);
-        self.state.ends = false;
         if self.state.strategy.is_patrolling() {
             // The residual frontiers were listed before the patrol.
             self.state.status = DONE;
             return;
         }
-        let missing = self.list_ways_out();
         let state = &mut *self.state;
         state.strategy.frontier.list_unreachable(&state.skeleton);
         if missing.is_none() && self.looks_again() {
@@ -56,15 +54,30 @@ impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
         begins
     }
 
-    /// Lists the reachable cells beyond which the map has no room. Returns which room is missing.
-    /// Cells beyond the map that cannot be reached do not count.
-    fn list_ways_out(&mut self) -> Option<NoRoom> {
+    /// Continues the search for reachable cells beyond which the map has no room; lists them and
+    /// ends the exploration. Cells beyond the map that cannot be reached do not count.
+    #[inline(never)]
+    pub(super) fn search_exits(&mut self) {
         let robot = self.robot().cell();
+        let state = &mut *self.state;
+        let inputs = Inputs {
+            tiles: state.map.tiles(),
+            // The skeleton stays the same while the search runs.
+            tiling: state.skeleton.tiling(),
+            frame: state.skeleton.frame(),
+            footprint: &self.footprint,
+            robot,
+        };
         let scratch = bytemuck::cast_slice_mut(&mut self.workspace.scratch);
-        let frontier = &mut self.state.strategy.frontier;
-        missing_room(&self.state.map, &self.footprint, robot, scratch, |cell| {
+        let frontier = &mut state.strategy.frontier;
+        let mut missing = None;
+        state.exits.advance(&inputs, scratch, |cell, room| {
+            missing = Some(room);
             frontier.list_map_exit(cell);
-        })
+        });
+        if !self.state.exits.is_running() {
+            self.end_now(missing);
+        }
     }
 
     /// Returns the status that tells why no frontier can be reached.

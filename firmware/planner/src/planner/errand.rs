@@ -35,7 +35,7 @@ use crate::math;
 use crate::path::context::STEP_M;
 use crate::path::nearest::Centres;
 use crate::path::search::path_between;
-use crate::path::viewpoint;
+use crate::path::{map_exits, viewpoint};
 use crate::planner::state::State;
 use crate::planner::step::Step;
 use crate::status::{Errand, Fault, Status};
@@ -346,7 +346,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.errands.last = going.unwrap_or(self.errands.last);
         self.strategy.begin_errand();
         self.viewpoints = viewpoint::Search::new();
-        self.ends = false;
+        self.exits = map_exits::Search::new();
     }
 
     /// Nothing leads nearer to the errand's place. A robot that stands as near as promised turns

@@ -129,12 +129,13 @@ impl<const TILES: usize, const SLOTS: usize> Step<'_, TILES, SLOTS> {
         }
     }
 
-    /// Ends the exploration. If the map lacks room, the next step ends it: to search the map's
-    /// exits takes as long as to plan.
+    /// Ends the exploration. If the map lacks room, the ways out of it are searched first.
     fn end(&mut self) {
-        self.state.ends = self.state.map.out_of_box() || self.state.map.pool_full();
-        if !self.state.ends {
-            self.end_now();
+        let (map, is_patrolling) = (&self.state.map, self.state.strategy.is_patrolling());
+        if !is_patrolling && (map.out_of_box() || map.pool_full()) {
+            self.state.exits.begin();
+        } else {
+            self.end_now(None);
         }
     }
 }

@@ -19,7 +19,7 @@ use crate::geometry::Cell;
 use crate::input::InputFaults;
 use crate::localise::{Localiser, Location};
 use crate::map::Map;
-use crate::path::viewpoint;
+use crate::path::{map_exits, viewpoint};
 use crate::roadmap::reachability;
 use crate::roadmap::skeleton::Skeleton;
 use crate::status::Status;
@@ -59,8 +59,8 @@ pub struct State<const TILES: usize, const SLOTS: usize> {
     pub(super) dark_steps: u8,
     /// A skeleton is complete and no path was planned on it yet.
     pub(super) has_new_skeleton: bool,
-    /// No frontier is left, and the next step ends the exploration.
-    pub(super) ends: bool,
+    /// The search for ways out of a map without room, which ends the exploration.
+    pub(super) exits: map_exits::Search,
     /// This step took what came for gone.
     pub(super) forgot_arrivals: bool,
     /// What happened in this step, but for what the strategy tells.
@@ -111,7 +111,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
             started: false,
             dark_steps: 0,
             has_new_skeleton: false,
-            ends: false,
+            exits: map_exits::Search::new(),
             forgot_arrivals: false,
             events: Events::NONE,
             correcting: Correcting::new(),
@@ -139,7 +139,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.started = false;
         self.dark_steps = 0;
         self.has_new_skeleton = false;
-        self.ends = false;
+        put(&mut self.exits, map_exits::Search::new);
         self.forgot_arrivals = false;
         self.events = Events::NONE;
         self.correcting = Correcting::new();

@@ -4,7 +4,7 @@
 //! | the robot | it |
 //! | --- | --- |
 //! | searches for a recovery | stands, and the search owns the scratch |
-//! | searches for viewpoints | looks about, and the search owns the scratch |
+//! | searches for viewpoints or exits | looks about, and the search owns the scratch |
 //! | goes back out of a passage | drives along its own track |
 //! | makes way for another robot | stands, or follows the field off the road |
 //! | is on the last metre of an errand | drives straight |
@@ -93,7 +93,8 @@ impl<'a, const TILES: usize, const SLOTS: usize> Step<'a, TILES, SLOTS> {
     fn act(&mut self, timer: &mut impl StageTimer) -> Output {
         let drive = &self.state.drive;
         let searches = drive.is_searching();
-        if searches || drive.is_retreating() || self.state.viewpoints.is_running() {
+        let looks = self.state.viewpoints.is_running() || self.state.exits.is_running();
+        if searches || drive.is_retreating() || looks {
             self.state.strategy.frontier.hold(self.config.period_ms());
         }
         if searches {
@@ -101,8 +102,8 @@ impl<'a, const TILES: usize, const SLOTS: usize> Step<'a, TILES, SLOTS> {
             timer.mark(Stage::Drive);
             return output;
         }
-        if self.state.viewpoints.is_running() {
-            self.search_viewpoints();
+        if looks {
+            self.search_map();
             timer.mark(Stage::Plan);
             return self.look_for_gaps();
         }
@@ -121,7 +122,16 @@ impl<'a, const TILES: usize, const SLOTS: usize> Step<'a, TILES, SLOTS> {
         self.follow_window(planned, timer)
     }
 
-    /// Returns the output of a step that searches for viewpoints.
+    /// Continues the search for viewpoints, or for ways out of the map.
+    fn search_map(&mut self) {
+        if self.state.exits.is_running() {
+            self.search_exits();
+        } else {
+            self.search_viewpoints();
+        }
+    }
+
+    /// Returns the output of a step that searches for viewpoints, or for ways out of the map.
     fn look_for_gaps(&mut self) -> Output {
         if !self.state.status.drives() {
             return Output::default();
@@ -137,10 +147,7 @@ impl<'a, const TILES: usize, const SLOTS: usize> Step<'a, TILES, SLOTS> {
     /// the step after it is complete, so no step does both. Returns true if this step planned.
     #[inline(never)]
     fn advance_plan(&mut self, timer: &mut impl StageTimer) -> bool {
-        let planned = if self.state.ends {
-            self.end_now();
-            true
-        } else if self.state.has_new_skeleton {
+        let planned = if self.state.has_new_skeleton {
             self.state.has_new_skeleton = !self.replan();
             self.state.errands.note_planned(self.config);
             true

@@ -7,7 +7,7 @@ use crate::drive::Drive;
 use crate::geometry::{CELL_M, Cell, MapPose, OdomPose};
 use crate::input::Input;
 use crate::math;
-use crate::path::viewpoint;
+use crate::path::{map_exits, viewpoint};
 use crate::planner::state::State;
 use crate::status::Status;
 use crate::strategy::Strategist;
@@ -46,7 +46,7 @@ impl<const TILES: usize, const SLOTS: usize> State<TILES, SLOTS> {
         self.viewpoints = viewpoint::Search::new();
         self.drive = Drive::new();
         self.has_new_skeleton = false;
-        self.ends = false;
+        self.exits = map_exits::Search::new();
     }
 
     /// Enters an input without a step: the robot stands by order, or its exploration has ended.

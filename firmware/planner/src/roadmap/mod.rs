@@ -9,6 +9,7 @@
 //! | `wavefront`, `residues` | distances from any set of centre cells, and the way back down |
 //! | `barrier` | cells taken out of the skeleton for a while |
 //! | [`reachability`] | the explored cells that the robot can reach |
+//! | [`flooding`] | their flood in instalments |
 //!
 //! The *centre cells* are the skeleton of the space left by obstacles: of the known part of it, or
 //! of the unexplored as well, so that paths may run through it \[Jorge15, step 1\]; see
@@ -30,6 +31,7 @@ mod barrier;
 pub(crate) mod branches;
 pub(crate) mod coarse;
 pub mod configuration_space;
+pub(crate) mod flooding;
 pub(crate) mod reachability;
 mod residues;
 pub mod skeleton;

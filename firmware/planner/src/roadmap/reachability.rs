@@ -50,13 +50,6 @@ pub(crate) struct Reachability<'a> {
 }
 
 impl<'a> Reachability<'a> {
-    /// Makes empty planes; `None` if the memory is too small, see [`scratch_words`].
-    pub(crate) fn new(frame: Frame, tiling: Tiling<'a>, scratch: &'a mut [u32]) -> Option<Self> {
-        let mut reachability = Self::resume(frame, tiling, scratch)?;
-        reachability.clear();
-        Some(reachability)
-    }
-
     /// Empties the planes.
     pub(crate) fn clear(&mut self) {
         self.open.fill(0);
@@ -64,7 +57,8 @@ impl<'a> Reachability<'a> {
         self.awake.fill(0);
     }
 
-    /// Takes up the flood of these tiles that the memory holds.
+    /// Takes up the flood of these tiles that the memory holds; `None` if the memory is too small,
+    /// see [`scratch_words`].
     pub(crate) fn resume(frame: Frame, tiling: Tiling<'a>, scratch: &'a mut [u32]) -> Option<Self> {
         let words = tiling.words();
         let (open, rest) = scratch.split_at_mut_checked(words)?;
@@ -87,7 +81,12 @@ impl<'a> Reachability<'a> {
         }
     }
 
-    /// Marks the open cells of the tile at a place.
+    /// Returns the number of tiles.
+    pub(crate) fn tiles(&self) -> usize {
+        self.tiling.keys().len()
+    }
+
+    /// Marks the open cells of the tile at a place, if there is one.
     pub(crate) fn load<const TILES: usize, const SLOTS: usize>(
         &mut self,
         tiles: &Tiles<TILES, SLOTS>,

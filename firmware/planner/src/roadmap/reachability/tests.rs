@@ -83,7 +83,8 @@ fn the_flood_reaches_what_a_queue_reaches() {
         let expected = reached_by_queue(&tiles, robot);
         let (frame, tiling) = (Frame::of(&tiles), Tiling::new(tiles.keys()));
         let mut scratch = vec![0xdead_beef; scratch_words(12)];
-        let mut flood = Reachability::new(frame, tiling, &mut scratch).expect("room");
+        let mut flood = Reachability::resume(frame, tiling, &mut scratch).expect("room");
+        flood.clear();
         for place in 0..tiles.keys().len() {
             // The robot is a point.
             flood.load(&tiles, &Footprint::new(0.05), place);
@@ -112,7 +113,8 @@ fn too_little_memory_is_no_flood() {
     let tiles = scattered(&mut 7);
     let tiling = Tiling::new(tiles.keys());
     let words = scratch_words(tiles.keys().len());
-    let new = |scratch: &mut [u32]| Reachability::new(Frame::of(&tiles), tiling, scratch).is_some();
-    assert!(new(&mut vec![0; words]));
-    assert!(!new(&mut vec![0; words - 1]));
+    let frame = Frame::of(&tiles);
+    let fits = |scratch: &mut [u32]| Reachability::resume(frame, tiling, scratch).is_some();
+    assert!(fits(&mut vec![0; words]));
+    assert!(!fits(&mut vec![0; words - 1]));
 }
