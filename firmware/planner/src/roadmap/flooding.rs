@@ -29,8 +29,8 @@ pub(crate) enum Flooding {
 }
 
 impl Flooding {
-    /// A flood that has not begun. Its planes may hold anything. All its bits are zero: a state that
-    /// holds it takes no flash.
+    /// A flood that has not begun. Its planes may hold anything. All its bits are zero, so that the
+    /// planner's first state takes no flash.
     pub(crate) const FIRST: Self = Self::Load(0);
 
     /// Runs an instalment. `start` reaches the first cells, once every tile is loaded; it returns
