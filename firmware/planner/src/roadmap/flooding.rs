@@ -1,8 +1,8 @@
 //! The flood of what the robot can reach, in instalments: a part of the tiles is loaded, or some of
 //! them are flooded, in each.
 //!
-//! An instalment takes at most some two million instructions. The planes of the flood keep their
-//! values in the lent memory until the last one; the robot stands meanwhile.
+//! Invariant: the lent memory keeps the planes from the first instalment to the last. The robot
+//! stands meanwhile.
 //!
 //! Units: tiles.
 
@@ -10,10 +10,9 @@ use crate::map::Tiles;
 use crate::roadmap::configuration_space::Footprint;
 use crate::roadmap::reachability::Reachability;
 
-/// Tiles that an instalment loads, at some 10,000 instructions each (measured: docs/MEASURED.md,
-/// "Instalments of a search for viewpoints").
+/// Tiles that an instalment loads. What a tile costs: [`crate::roadmap::reachability`].
 const TILES_PER_STEP: u16 = 120;
-/// Tiles that an instalment floods, at some 3,000 instructions each.
+/// Tiles that an instalment floods.
 const FLOODS_PER_STEP: u32 = 300;
 
 /// How far a flood is.
@@ -21,6 +20,7 @@ const FLOODS_PER_STEP: u32 = 300;
 pub(crate) enum Flooding {
     /// Loads the tile at place n next.
     Load(u16),
+    /// Floods from the tiles that are awake next.
     Spread,
     /// The planes hold all that can be reached.
     Over,
