@@ -39,6 +39,7 @@ use crate::path::residual_frontiers::ResidualFrontiers;
 use crate::path::search::PathSearch;
 use crate::path::shared_trip::{AllJudged, Judged, begin_of_trip};
 use crate::path::utility::utility;
+use crate::path::ways_back::WaysBack;
 use crate::path::{Path, PlanningContext, PlanningScratch};
 
 /// Maximum number of candidates that a round judges: a gain costs about 50,000 instructions.
@@ -186,10 +187,11 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
     #[inline(never)]
     fn best(&self, candidates: impl Iterator<Item = Candidate>) -> Option<(Candidate, bool)> {
         let mut best: Option<(f32, Candidate, bool)> = None;
-        let mut judged = AllJudged::new();
+        let (mut judged, mut ways_back) = (AllJudged::new(), WaysBack::NONE);
         for candidate in candidates {
             let least = best.map_or(0.0, |(utility, ..)| utility);
-            if let Some((utility, shares)) = self.utility_above(least, candidate, &mut judged) {
+            let lent = (&mut judged, &mut ways_back);
+            if let Some((utility, shares)) = self.utility_above(least, candidate, lent) {
                 best = Some((utility, candidate, shares));
             }
         }
@@ -206,7 +208,7 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
         &self,
         least: f32,
         candidate: Candidate,
-        judged: &mut AllJudged,
+        (judged, ways_back): (&mut AllJudged, &mut WaysBack),
     ) -> Option<(f32, bool)> {
         let order = &self.context.order;
         let tuning = order.tuning;
@@ -231,9 +233,9 @@ impl<const TILES: usize, const SLOTS: usize> Choice<'_, TILES, SLOTS> {
         let is_open = || !tried && view.is_open(self.context.disc);
         let counts_more = gain_m2 < promised && is_open();
         let value = counted(if counts_more { promised } else { gain_m2 });
-        let ahead = self
-            .search
-            .first_cell_near(self.robot.cell, candidate.site, AHEAD_M);
+        let goal = (candidate.site, candidate.steps.into());
+        let near = (self.robot.cell, AHEAD_M);
+        let ahead = self.search.first_cell_near(near, goal, ways_back);
         let trip_m = path_m + tuning.turn_m * self.robot.turn_to(ahead);
         let utility = utility(value, trip_m);
         if utility <= least {

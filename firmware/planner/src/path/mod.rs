@@ -9,6 +9,7 @@
 //! | [`nearest`], [`centres`] | centre cells: the nearest to a place, by place, by map class |
 //! | [`search`] | a wave over centre cells and the path down it |
 //! | [`robot_wave`] | a wave from the robot over centre cells, and the paths back to it |
+//! | [`ways_back`] | the first cell near the robot on the ways back from its goals |
 //! | [`candidates`] | frontier cells near each other, in lent memory |
 //! | [`goal_choice`] | the frontier of the greatest utility, and if it is worth the trip |
 //! | [`shared_trip`] | goals that are worth a trip together only |
@@ -52,6 +53,7 @@ pub(crate) mod second_look;
 pub(crate) mod shared_trip;
 pub(crate) mod utility;
 pub(crate) mod viewpoint;
+pub(crate) mod ways_back;
 
 pub use cell_path::Path;
 pub(crate) use context::{PlanningContext, PlanningScratch, RoundOutcome};

@@ -18,6 +18,7 @@ use crate::geometry::Cell;
 use crate::grid::{Plane, Site};
 use crate::path::Path;
 use crate::path::search::PathSearch;
+use crate::path::ways_back::WaysBack;
 use crate::roadmap::Wavefront;
 
 /// Maximum number of pieces of the skeleton that the wave enters. In the local grid, 6 m wide, few
@@ -139,16 +140,16 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
     }
 
     /// Returns the first cell within `radius_m` of the robot on the way back from a cell that its
-    /// wave reached; the last one if none is.
-    pub(crate) fn first_cell_near(&self, robot: Cell, goal: Site, radius_m: f32) -> Cell {
+    /// wave reached, `steps` away; the last one if none is. `ways` is of this wave and radius.
+    pub(crate) fn first_cell_near(
+        &self,
+        (robot, radius_m): (Cell, f32),
+        (goal, steps): (Site, u32),
+        ways: &mut WaysBack,
+    ) -> Cell {
         let frame = self.centres.frame;
-        let mut cell = frame.cell(goal);
-        for site in self.space.residues.descent(goal) {
-            if cell.distance2(robot) <= radius_m * radius_m {
-                break;
-            }
-            cell = frame.cell(site);
-        }
-        cell
+        let is_near = |site| frame.cell(site).distance2(robot) <= radius_m * radius_m;
+        let goal = (goal, steps);
+        frame.cell(ways.first_near(&self.space.residues, goal, is_near))
     }
 }
