@@ -3,11 +3,9 @@
 //! Direct and loopback give the same commands, and faults on the line change none. A device that
 //! resets or falls silent ends the run with a typed error within the stale limit.
 
-mod drive;
-
 use core::time::Duration;
 
-use drive::{Robot, digest_of, start};
+use crate::drive::{Robot, digest_of, start};
 use fieldline_device::STALE_MS;
 use fieldline_protocol::message::{
     Beacon, Body, Control, Finish, Member, Observation, Packet, Path, Start, Status, Strategy, Team,

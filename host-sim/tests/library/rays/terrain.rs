@@ -13,7 +13,7 @@ use parry3d::utils::Array2;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::{LIMIT_M, Solid, direction, grazes, hits, uniform, vector};
+use super::{LIMIT_M, Solid, direction, grazes, hits, uniform, vector};
 
 const RESOLUTION_M: f64 = 0.1;
 const CELLS: [usize; 2] = [130, 90];

@@ -4,7 +4,7 @@ use host_sim::world::{Class, GridCell, Occupancy, Ray, WALL_HEIGHT_M, World};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-use crate::{Solid, direction, grazes, hits, uniform};
+use super::{Solid, direction, grazes, hits, uniform};
 
 const RESOLUTION_M: f64 = 0.05;
 const CELLS: [i64; 2] = [240, 160];

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use host_sim::metrics::CellSet;
 use host_sim::world::{Class, GridCell, Ray, Surface, World, builtins};
 
-use crate::{Folder, KEYS, png};
+use super::{Folder, KEYS, png};
 
 /// The world as characters, greatest y first.
 fn drawn(world: &World) -> Vec<String> {

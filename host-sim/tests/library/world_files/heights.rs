@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use host_sim::world::World;
 
-use crate::{Folder, KEYS, png};
+use super::{Folder, KEYS, png};
 
 #[test]
 fn heights_are_linear_between_the_samples() {
