@@ -38,7 +38,9 @@ pub(super) struct Table<'a> {
 
 /// Parses one document.
 pub(super) fn parse(text: &str) -> Result<Node, String> {
-    serde_saphyr::from_str(text).map_err(|error| {
+    // With the truth values of YAML 1.1, a key `y` would be one.
+    let options = serde_saphyr::options! { strict_booleans: true };
+    serde_saphyr::from_str_with_options(text, options).map_err(|error| {
         let reason = error
             .without_snippet()
             .render_with_formatter(&serde_saphyr::UserMessageFormatter)
@@ -96,7 +98,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// 0 or 1, or `true` or `false`.
+    /// 0 or 1, or `true` or `false`, or `yes` or `no`.
     pub(super) fn flag(&self, key: &str) -> Result<Option<bool>, BadKey> {
         match self.node(key) {
             None => Ok(None),
@@ -104,6 +106,7 @@ impl<'a> Table<'a> {
             Some(Node::Number(number)) if *number == 0.0 || *number == 1.0 => {
                 Ok(Some(*number == 1.0))
             }
+            Some(Node::Text(text)) if text == "yes" || text == "no" => Ok(Some(text == "yes")),
             Some(other) => Err(self.bad(key, &format!("{other} is not 0 or 1; give one of them"))),
         }
     }

@@ -63,7 +63,10 @@ impl WaysBack {
     fn known(&mut self, site: Site, steps: u32) -> Option<Site> {
         let steps = steps as usize;
         let place = (steps / APART) % MOST;
-        let noted = self.noted.get_mut(place).filter(|_| steps % APART == 0)?;
+        let noted = self
+            .noted
+            .get_mut(place)
+            .filter(|_| steps.is_multiple_of(APART))?;
         if noted.0 == site {
             return Some(noted.1);
         }

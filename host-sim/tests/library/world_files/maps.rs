@@ -41,7 +41,7 @@ fn shades_become_classes_and_the_top_row_has_the_greatest_y() {
     assert!(world.is_solid(1.5, 4.5) && !world.is_solid(0.5, 4.5) && world.is_solid(-1.5, 4.5));
     // Negated, with wide thresholds: white is wall.
     let text = format!(
-        "image: map.pgm\n{KEYS}negate: 1\nfree_thresh: 0.4\noccupied_thresh: 0.9\n\
+        "image: map.pgm\n{KEYS}negate: yes\nfree_thresh: 0.4\noccupied_thresh: 0.9\n\
          mode: trinary\nrobots: [[1.5, 4.5, 0]]"
     );
     let world = World::load(&folder.write("negated.yaml", text)).expect("loads");
