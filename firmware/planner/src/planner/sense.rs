@@ -7,7 +7,7 @@
 
 use crate::config::Config;
 use crate::doing::Event;
-use crate::geometry::{CELL_M, MapPose, OdomPose, Point, Pose};
+use crate::geometry::{CELL_M, Cell, MapPose, OdomPose, Point, Pose};
 use crate::input::{INVALID_MM, Input};
 use crate::math;
 use crate::planner::state::State;
@@ -162,19 +162,35 @@ pub(super) fn level_scans<'a>(
 /// Returns true if the fence allows every cell under the hull of a robot at `pose`.
 #[must_use]
 pub fn may_stand(config: &Config, pose: &Pose) -> bool {
+    // A row of the fence costs as much as a cell of it.
+    let (corner, rows) = under_hull(config, pose);
+    let mut rows = (corner.y..).zip(rows).filter(|(_, row)| *row != 0);
+    config.fence.is_empty() || rows.all(|(y, row)| config.fence.row(corner.x, y) & row == 0)
+}
+
+/// Returns the cells under the hull of a robot, in a square of 64 cells, and the square's corner.
+/// The longest hull has a diagonal of 57 cells.
+#[inline(never)]
+fn under_hull(config: &Config, pose: &Pose) -> (Cell, [u64; 64]) {
     let (length_m, width_m) = (config.robot.half_length_m, config.robot.half_width_m);
     // Places across a hull, at most half a cell apart, its edges included.
     let parts = |half_m: f32| math::floor(4.0 * half_m / CELL_M) + 1;
     let at = |k: i32, half_m: f32| half_m * (2.0 * k as f32 / parts(half_m) as f32 - 1.0);
-    let is_free = |i: i32, j: i32| {
-        let place = Point {
-            x_m: at(i, length_m),
-            y_m: at(j, width_m),
-        };
-        config.fence.allows(pose.to_map(place).cell())
-    };
-    config.fence.is_empty()
-        || (0..=parts(length_m)).all(|i| (0..=parts(width_m)).all(|j| is_free(i, j)))
+    let corner = pose.point().cell().offset(-32, -32);
+    let mut rows = [0; 64];
+    for i in 0..=parts(length_m) {
+        for j in 0..=parts(width_m) {
+            let place = Point {
+                x_m: at(i, length_m),
+                y_m: at(j, width_m),
+            };
+            let cell = pose.to_map(place).cell();
+            if let Some(row) = rows.get_mut((cell.y - corner.y) as usize) {
+                *row |= 1 << ((cell.x - corner.x) & 63);
+            }
+        }
+    }
+    (corner, rows)
 }
 
 /// Returns true if a beam tells anything.
@@ -195,4 +211,64 @@ pub fn starts_blocked(config: &Config, input: &Input<'_>) -> bool {
         let count = told().count();
         count > 0 && told().filter(blocked).count() * 10 >= count * 9
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fence::Fence;
+    use crate::grid::bits::tests::Rng;
+    use crate::robot::RobotShape;
+
+    /// [`may_stand`], place by place.
+    fn slowly(config: &Config, pose: &Pose) -> bool {
+        let (length_m, width_m) = (config.robot.half_length_m, config.robot.half_width_m);
+        let parts = |half_m: f32| math::floor(4.0 * half_m / CELL_M) + 1;
+        let at = |k: i32, half_m: f32| half_m * (2.0 * k as f32 / parts(half_m) as f32 - 1.0);
+        let is_free = |i: i32, j: i32| {
+            let place = Point {
+                x_m: at(i, length_m),
+                y_m: at(j, width_m),
+            };
+            config.fence.allows(pose.to_map(place).cell())
+        };
+        (0..=parts(length_m)).all(|i| (0..=parts(width_m)).all(|j| is_free(i, j)))
+    }
+
+    #[test]
+    fn a_robot_may_stand_where_no_place_under_its_hull_is_forbidden() {
+        let mut rng = Rng(3);
+        let mut between = |low: f32, high: f32| {
+            let part = (rng.next() >> 40) as f32 / (1_u64 << 24) as f32;
+            low + (high - low) * part
+        };
+        let mut allowed = 0;
+        for round in 0..600 {
+            // The longest hull that a session may have, and short ones.
+            let most_m = if round % 2 == 0 { 4.0 } else { 0.6 };
+            let robot = RobotShape::rectangle(between(0.1, most_m), between(0.1, most_m), 0.5);
+            let (x_m, y_m) = (between(-3.0, 3.0), between(-3.0, 3.0));
+            let corner = |dx, dy| Point {
+                x_m: x_m + dx,
+                y_m: y_m + dy,
+            };
+            let pose = Pose {
+                x_m: between(-3.0, 3.0),
+                y_m: between(-3.0, 3.0),
+                yaw_rad: between(-3.1, 3.1),
+                ..Pose::default()
+            };
+            let (east, north) = (between(0.2, 2.0), between(0.2, 2.0));
+            let triangle = [corner(0.0, 0.0), corner(east, 0.1), corner(0.1, north)];
+            let config = Config {
+                robot,
+                fence: Fence::new().no_go(&triangle),
+                ..Config::pioneer_3at(heapless::Vec::new())
+            };
+            let may = may_stand(&config, &pose);
+            assert_eq!(may, slowly(&config, &pose), "round {round}");
+            allowed += u32::from(may);
+        }
+        assert!((300..560).contains(&allowed), "{allowed}");
+    }
 }
