@@ -126,9 +126,11 @@ impl Fence {
         let mut forbidden = 0;
         for (corners, is_bounds) in self.polygons() {
             let mut inside = 0;
-            for side in sides(corners) {
+            for side in sides(corners, low, low + 1.0) {
                 inside ^= side.crossed(left, low + 0.5);
-                forbidden |= side.touched(left, low);
+                if !side.is_west(left) && !side.is_east(left) {
+                    forbidden |= side.touched(left, low);
+                }
             }
             forbidden |= if is_bounds { !inside } else { inside };
         }
@@ -141,7 +143,9 @@ impl Fence {
     pub(crate) fn steady_row(&self, (x, y): (i32, i32), height: i32) -> Option<u64> {
         let (left, low) = (x as f32, y as f32);
         let (right, top) = (left + 64.0, low + height as f32);
-        let mut sides = self.polygons().flat_map(|(corners, _)| sides(corners));
+        let mut sides = self
+            .polygons()
+            .flat_map(|(corners, _)| sides(corners, low, top));
         let passes = sides.any(|Side { from, to }| {
             from.x_m.max(to.x_m) >= left
                 && from.x_m.min(to.x_m) <= right
@@ -183,20 +187,42 @@ struct Side {
     to: Point,
 }
 
-/// Returns the sides of a polygon.
-fn sides(corners: &[Point]) -> impl Iterator<Item = Side> + '_ {
-    let cells = |point: &Point| Point {
-        x_m: point.x_m / CELL_M,
-        y_m: point.y_m / CELL_M,
-    };
-    let next = corners.iter().cycle().skip(1);
-    corners.iter().zip(next).map(move |(from, to)| Side {
-        from: cells(from),
-        to: cells(to),
+/// Returns the sides of a polygon that pass through the rows from `low` to `top`, and maybe some
+/// within a cell of these. The others are told in metres, which saves their divisions.
+fn sides(corners: &[Point], low: f32, top: f32) -> impl Iterator<Item = Side> + '_ {
+    let (low_m, top_m) = ((low - 1.0) * CELL_M, (top + 1.0) * CELL_M);
+    let mut last = corners.last().copied().unwrap_or_default();
+    let sides = corners
+        .iter()
+        .map(move |to| (core::mem::replace(&mut last, *to), *to));
+    let near = sides.filter(move |(from, to)| {
+        let (is_below, is_above) = (|it: &Point| it.y_m < low_m, |it: &Point| it.y_m > top_m);
+        !(is_below(from) && is_below(to) || is_above(from) && is_above(to))
+    });
+    near.map(|(from, to)| Side {
+        from: in_cells(from),
+        to: in_cells(to),
     })
 }
 
+fn in_cells(point: Point) -> Point {
+    Point {
+        x_m: point.x_m / CELL_M,
+        y_m: point.y_m / CELL_M,
+    }
+}
+
 impl Side {
+    /// Returns true if the side lies to the west of the 64 cells from `left` on, with one to spare.
+    const fn is_west(&self, left: f32) -> bool {
+        self.from.x_m.max(self.to.x_m) < left - 1.0
+    }
+
+    /// Returns true if the side lies to the east of the 64 cells from `left` on, with one to spare.
+    const fn is_east(&self, left: f32) -> bool {
+        self.from.x_m.min(self.to.x_m) > left + 65.0
+    }
+
     /// Returns where the side, which is not level, crosses a level line.
     fn x_at(&self, y: f32) -> f32 {
         let part = (y - self.from.y_m) / (self.to.y_m - self.from.y_m);
@@ -205,8 +231,11 @@ impl Side {
 
     /// Returns the cells of the line at `y` whose centres lie to the east of the side.
     fn crossed(&self, left: f32, y: f32) -> u64 {
-        if (self.from.y_m > y) == (self.to.y_m > y) {
+        if (self.from.y_m > y) == (self.to.y_m > y) || self.is_east(left) {
             return 0;
+        }
+        if self.is_west(left) {
+            return u64::MAX;
         }
         from_bit(math::floor(self.x_at(y) - left + 0.5))
     }

@@ -12,6 +12,8 @@
 //!
 //! Units: cells; metres where a name says so.
 
+use core::ops::Range;
+
 use crate::field::window::{ROW, SIDE};
 use crate::geometry::{CELL_M, Cell, Point};
 use crate::grid::bits::halve;
@@ -118,10 +120,22 @@ impl LocalGrid {
     /// Returns the window cell of a map cell; `None` outside the window.
     #[must_use]
     pub(crate) fn place(&self, cell: Cell) -> Option<(usize, usize)> {
-        let x = (cell.x - self.origin.x).checked_div_euclid(self.scale)?;
-        let y = (cell.y - self.origin.y).checked_div_euclid(self.scale)?;
+        let bits = self.scale.checked_ilog2()?;
+        let x = (cell.x - self.origin.x) >> bits;
+        let y = (cell.y - self.origin.y) >> bits;
         let inside = |at: i32| (0..SIDE as i32).contains(&at);
         (inside(x) && inside(y)).then_some((x as usize, y as usize))
+    }
+
+    /// Returns the rows of a coarse cell whose least map cell is `least`, and its columns, as far
+    /// as they lie in the window.
+    fn span(&self, least: Cell) -> Option<(Range<usize>, u64)> {
+        let bits = self.scale.checked_ilog2()?;
+        let along = |at: i32, origin: i32| ((at - origin) >> bits, (at + 1 - origin) >> bits);
+        let (left, right) = along(least.x, self.origin.x);
+        let (low, high) = along(least.y, self.origin.y);
+        let inside = |at: i32| at.clamp(0, SIDE as i32) as usize;
+        Some((inside(low)..inside(high + 1), columns(left, right)))
     }
 
     /// Returns the map cell in the middle of a window cell.
@@ -158,15 +172,16 @@ impl LocalGrid {
     /// Sets in `rows` the passable window cells of a coarse cell whose least map cell is `least`.
     /// Returns true if there are any.
     pub(crate) fn mark(&self, rows: &mut Rows, least: Cell) -> bool {
-        let mut any = false;
-        for part in least.quarters() {
-            let passable = |place: &_| Self::has(&self.passable, *place);
-            if let Some(place) = self.place(part).filter(passable) {
-                Self::put(rows, place);
-                any = true;
-            }
+        let Some((span, columns)) = self.span(least) else {
+            return false;
+        };
+        let rows = rows.iter_mut().zip(&self.passable);
+        let mut any = 0;
+        for (row, passable) in rows.skip(span.start).take(span.len()) {
+            *row |= passable & columns;
+            any |= passable & columns;
         }
-        any
+        any != 0
     }
 
     /// Returns true if a square of the map overlaps the grid.
@@ -180,12 +195,10 @@ impl LocalGrid {
 
     /// Makes the coarse cell whose least map cell is `least` impassable.
     pub(crate) fn block(&mut self, least: Cell) {
-        for part in least.quarters() {
-            if let Some((x, y)) = self.place(part)
-                && let Some(row) = self.passable.get_mut(y)
-            {
-                *row &= !(1 << x);
-            }
+        if let Some((span, columns)) = self.span(least)
+            && let Some(rows) = self.passable.get_mut(span)
+        {
+            rows.iter_mut().for_each(|row| *row &= !columns);
         }
     }
 

@@ -33,6 +33,9 @@ use crate::robot::LaserMount;
 const STRIDE_M: f32 = 0.5 * CELL_M;
 /// Least sine of the angle between two beams: a smaller one counts as this.
 const MIN_SINE: f32 = 1e-3;
+/// Most looks at a beam behind a first jamb, which bounds the time of a view: each pair of jambs
+/// looks at the beams between them.
+const MOST_LOOKS: u32 = 4_096;
 
 /// The part of a room that a cell belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +57,8 @@ pub(crate) struct DoorwayView<'a> {
     tuning: &'a GroundTuning,
     laser: &'a LaserMount,
     ranges_mm: &'a [u16],
+    /// Looks at beams that are left.
+    looks: u32,
 }
 
 impl<'a> DoorwayView<'a> {
@@ -77,6 +82,7 @@ impl<'a> DoorwayView<'a> {
             tuning,
             laser,
             ranges_mm,
+            looks: MOST_LOOKS,
         })
     }
 
@@ -92,19 +98,48 @@ impl<'a> DoorwayView<'a> {
         self.attitude.ray(&self.mount, number, range_m)
     }
 
-    /// Returns the beams through the first doorway whose first jamb is beam `from` or a later one.
-    pub(crate) fn next_doorway(&self, heights: &Heights<'_>, from: usize) -> Option<Range<usize>> {
+    /// Returns a beam that hit something; `None` as well if no look is left.
+    fn look(&mut self, number: usize) -> Option<Ray> {
+        self.looks = self.looks.checked_sub(1)?;
+        self.ray(number)
+    }
+
+    /// Returns the beams through the first doorway whose first jamb is beam `from` or a later one;
+    /// `None` as well if no look is left.
+    pub(crate) fn next_doorway(
+        &mut self,
+        heights: &Heights<'_>,
+        from: usize,
+    ) -> Option<Range<usize>> {
         let beams = self.ranges_mm.len();
-        (from..beams)
-            .filter(|&first| self.is_jamb(first, first + 1))
-            .find_map(|first| {
-                // A beam that hit nothing ends the search: it shows no room.
-                let mut beyond = (first + 1..beams).take_while(|&k| self.range(k).is_some());
-                let second = beyond.find(|&second| {
-                    self.is_jamb(second, second - 1) && self.is_doorway(heights, first, second)
-                })?;
-                Some(first + 1..second)
-            })
+        for first in from..beams {
+            if self.is_jamb(first, first + 1)
+                && let Some(jamb) = self.ray(first).filter(|ray| self.stands(heights, ray))
+                && let Some(second) = self.second_jamb(heights, (first, &jamb))
+            {
+                return Some(first + 1..second);
+            }
+        }
+        None
+    }
+
+    /// Returns the beam on the second jamb of the doorway whose first jamb is this one.
+    fn second_jamb(&mut self, heights: &Heights<'_>, first: (usize, &Ray)) -> Option<usize> {
+        for second in first.0 + 1..self.ranges_mm.len() {
+            // A beam that hit nothing ends the search: it shows no room.
+            if self.looks == 0 || self.range(second).is_none() {
+                return None;
+            }
+            if self.is_jamb(second, second - 1) && self.is_doorway(heights, first, second) {
+                return Some(second);
+            }
+        }
+        None
+    }
+
+    /// Returns true if what a beam hit stands.
+    fn stands(&self, heights: &Heights<'_>, ray: &Ray) -> bool {
+        heights.is_obstacle(ray.hit_cell(self.tuning.hit_depth_m), self.tuning)
     }
 
     /// Returns true if a beam ends near the robot, and nearer than the beam beside it.
@@ -117,17 +152,21 @@ impl<'a> DoorwayView<'a> {
         }
     }
 
-    /// Returns true if two beams end on the jambs of a doorway, and all beams between them end on
-    /// something that stands behind it.
-    fn is_doorway(&self, heights: &Heights<'_>, first: usize, second: usize) -> bool {
-        let (Some(a), Some(b)) = (self.ray(first), self.ray(second)) else {
+    /// Returns true if two beams end on the jambs of a doorway, of which the first stands, and all
+    /// beams between them end on something that stands behind it.
+    fn is_doorway(
+        &mut self,
+        heights: &Heights<'_>,
+        (first, jamb): (usize, &Ray),
+        second: usize,
+    ) -> bool {
+        let Some(other) = self.look(second) else {
             return false;
         };
-        let (from, to, tuning) = (a.end(), b.end(), self.tuning);
+        let (from, to, tuning) = (jamb.end(), other.end(), self.tuning);
         let width_m = from.distance_m(to);
-        let stands = |ray: &Ray| heights.is_obstacle(ray.hit_cell(tuning.hit_depth_m), tuning);
         let widths_m = CELL_M..=tuning.max_doorway_m;
-        if !widths_m.contains(&width_m) || !stands(&a) || !stands(&b) {
+        if !widths_m.contains(&width_m) || !self.stands(heights, &other) {
             return false;
         }
         let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
@@ -136,7 +175,7 @@ impl<'a> DoorwayView<'a> {
         let depth_m =
             |point: Point| (dy * (point.x_m - from.x_m) - dx * (point.y_m - from.y_m)) / width_m;
         (first + 1..second).all(|k| {
-            self.ray(k).is_some_and(|ray| {
+            self.look(k).is_some_and(|ray| {
                 let over_m = ray.height_m(ray.length_m) - self.ground_m;
                 depth_m(ray.end()) > tuning.min_recess_m && over_m > self.ground.obstacle_m
             })
@@ -218,7 +257,7 @@ mod tests {
     use std::collections::BTreeMap;
     use std::vec::Vec;
 
-    use super::{DoorwayView, Part};
+    use super::{DoorwayView, MOST_LOOKS, Part};
     use crate::config::{GroundTuning, UnevenGround};
     use crate::geometry::{Cell, Point, Pose};
     use crate::ground::elevation::tests::OwnedWindow;
@@ -284,7 +323,7 @@ mod tests {
         }
         assert!(LASER.is_level());
         let mut cells = BTreeMap::new();
-        if let Some(view) = DoorwayView::new(
+        if let Some(mut view) = DoorwayView::new(
             &pose,
             &UnevenGround::TABLE_I,
             &GroundTuning::DEFAULT,
@@ -374,5 +413,28 @@ mod tests {
             ..POSE
         };
         silent(&ROOM, leaning, &scan(&ROOM));
+    }
+    /// Returns the looks that a view of this scan leaves, where everything stands.
+    fn looks_left(ranges_mm: &[u16]) -> u32 {
+        let mut owned = OwnedWindow::new(POSE.point().cell());
+        let mut window = owned.write();
+        for cell in (0..70).flat_map(|y| (0..80).map(move |x| Cell { x, y })) {
+            (0..2).for_each(|_| window.mark_obstacle(cell));
+        }
+        let (ground, tuning) = (&UnevenGround::TABLE_I, &GroundTuning::DEFAULT);
+        let mut view = DoorwayView::new(&POSE, ground, tuning, &LASER, ranges_mm).unwrap();
+        let mut from = 0;
+        while let Some(beams) = view.next_doorway(&window.read(), from) {
+            from = beams.end;
+        }
+        view.looks
+    }
+
+    #[test]
+    fn a_view_of_noise_ends_and_that_of_a_room_has_looks_to_spare() {
+        assert!(looks_left(&scan(&ROOM)) > MOST_LOOKS / 2);
+        // Every second beam is a jamb.
+        let noise: Vec<u16> = (0..360).map(|k| 500 + k * 2 + k % 2 * 2_000).collect();
+        assert_eq!(looks_left(&noise), 0);
     }
 }

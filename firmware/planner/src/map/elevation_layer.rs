@@ -118,7 +118,7 @@ impl<const TILES: usize, const SLOTS: usize> Map<TILES, SLOTS> {
         for (laser, ranges_mm) in config.lasers.iter().zip(input.scans) {
             let tuning = &config.tuning.ground;
             let view = DoorwayView::new(&input.pose, ground, tuning, laser, ranges_mm);
-            let Some(view) = view.filter(|_| laser.is_level()) else {
+            let Some(mut view) = view.filter(|_| laser.is_level()) else {
                 continue;
             };
             let mut from = 0;

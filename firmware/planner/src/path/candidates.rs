@@ -71,29 +71,31 @@ impl<'a> Candidates<'a> {
         self.len
     }
 
-    /// Adds a frontier cell, which is no nearer than those before.
-    pub(crate) fn add(&mut self, site: Site, steps: u32) {
+    /// Adds a frontier cell, which is no nearer than those before. Returns true if it is the first
+    /// of a candidate.
+    pub(crate) fn add(&mut self, site: Site, steps: u32) -> bool {
+        let used = self.words.get_mut(..self.len * EACH).unwrap_or_default();
         // A wave finds neighbours soon after one another, so the last candidates come first.
-        let near = (0..self.len).rev().find(|&k| self.get(k).has(site));
-        let place = near.unwrap_or(self.len);
-        let candidate = if near.is_some() {
-            let candidate = self.get(place);
-            Candidate {
-                cells: candidate.cells.saturating_add(1),
-                ..candidate
-            }
-        } else {
-            Candidate {
-                site,
-                // The longest way in the map has fewer.
-                steps: u16::try_from(steps).unwrap_or(u16::MAX),
-                cells: 1,
-            }
-        };
-        if let Some(words) = self.words.get_mut(place * EACH..(place + 1) * EACH) {
-            words.copy_from_slice(&candidate.words());
-            self.len = self.len.max(place + 1);
+        let mut listed = used.as_chunks_mut().0.iter_mut().rev();
+        if let Some(near) = listed.find(|words| Candidate::from_words(**words).has(site)) {
+            let candidate = Candidate::from_words(*near);
+            let cells = candidate.cells.saturating_add(1);
+            *near = Candidate { cells, ..candidate }.words();
+            return false;
         }
+        let candidate = Candidate {
+            site,
+            // The longest way in the map has fewer.
+            steps: u16::try_from(steps).unwrap_or(u16::MAX),
+            cells: 1,
+        };
+        let room = self.words.get_mut(self.len * EACH..(self.len + 1) * EACH);
+        let fits = room.is_some();
+        if let Some(room) = room {
+            room.copy_from_slice(&candidate.words());
+            self.len += 1;
+        }
+        fits
     }
 
     /// Returns the candidates at these places.

@@ -115,7 +115,7 @@ impl<const TILES: usize, const SLOTS: usize> PlanningContext<'_, TILES, SLOTS> {
         if let Some(site) = here.filter(|&site| centres.cells.get(site)) {
             return Some(site);
         }
-        let (site, _) = centres.nearest(from, scratch.local_grid, |_| true)?;
+        let (site, _) = centres.nearest(from, scratch.local_grid, |_| u32::MAX)?;
         Some(site)
     }
 

@@ -93,12 +93,14 @@ fn best_candidate<const TILES: usize, const SLOTS: usize>(
     let mut candidates = Candidates::new(words);
     let (centres, robot) = (search.centres, context.pose.point().cell());
     let shared = present.filter(|present| present.shares_trip);
+    // The goal of a shared trip may be far behind those that are not worth theirs.
+    let mut awaited = shared;
     search.spread_from(robot, frontier, |site, steps| {
-        if !residual.is_given_up(centres.cell(site)) {
-            candidates.add(site, steps);
+        let cell = centres.cell(site);
+        if !residual.is_given_up(cell) && candidates.add(site, steps) {
+            awaited = awaited.filter(|present| !present.is_beside(cell));
         }
-        // The goal of a shared trip may be far behind those that are not worth theirs.
-        if shared.is_none() && candidates.len() > before + MOST_JUDGED {
+        if awaited.is_none() && candidates.len() > before + MOST_JUDGED {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())

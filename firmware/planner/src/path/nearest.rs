@@ -42,16 +42,17 @@ pub(crate) struct Centres<'a, const TILES: usize, const SLOTS: usize> {
 }
 
 impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
-    /// Returns the nearest centre cell that `accepts` holds for, and the coarse steps there from a
-    /// robot at `from`, which may stand in an impassable cell.
+    /// Returns the nearest centre cell that is one of `among`, and the coarse steps there from a
+    /// robot at `from`, which may stand in an impassable cell. `among` returns the cells of a word
+    /// of the plane, by its index, that are looked for.
     pub(crate) fn nearest(
         &self,
         from: Cell,
         grid: &mut LocalGrid,
-        accepts: impl Fn(Site) -> bool,
+        among: impl Fn(usize) -> u32,
     ) -> Option<(Site, u32)> {
         let mut scales = SCALES.iter();
-        scales.find_map(|&scale| self.nearest_at_scale(from, (grid, scale), &accepts))
+        scales.find_map(|&scale| self.nearest_at_scale(from, (grid, scale), &among))
     }
 
     /// Returns the nearest centre cell, as [`Self::nearest`], in the grid of one scale.
@@ -59,10 +60,10 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         &self,
         from: Cell,
         (grid, scale): (&mut LocalGrid, i32),
-        accepts: &impl Fn(Site) -> bool,
+        among: &impl Fn(usize) -> u32,
     ) -> Option<(Site, u32)> {
         self.read(grid, from, scale);
-        self.nearest_in(grid, from, accepts)
+        self.nearest_in(grid, from, among)
     }
 
     /// Returns the nearest centre cell in the grid, as [`Self::nearest`]. It is not inlined: its
@@ -72,30 +73,30 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         &self,
         grid: &LocalGrid,
         from: Cell,
-        accepts: &impl Fn(Site) -> bool,
+        among: &impl Fn(usize) -> u32,
     ) -> Option<(Site, u32)> {
-        let targets = self.targets(grid, accepts);
+        let targets = self.targets(grid, among);
         let mut seeds: Rows = [0; SIDE];
         LocalGrid::put(&mut seeds, grid.place(from)?);
         let met = flood::nearest(&grid.passable, &mut seeds, &targets)?;
         let steps = u32::from(met.steps) * grid.scale as u32 / 2;
-        Some((self.site_in(grid, met.site, accepts)?, steps))
+        Some((self.site_in(grid, met.site, among)?, steps))
     }
 
-    /// Calls `visit` with the centre cells near a robot at `from` that `accepts` holds for and the
-    /// coarse steps there, the nearest first: those at most [`ENTRY_STEPS`] farther off than the
-    /// nearest one. Takes the first of these scales of the grid that has some. Returns false if
-    /// there are none.
+    /// Calls `visit` with the centre cells near a robot at `from` that are some of `among`, as
+    /// [`Self::nearest`], and the coarse steps there, the nearest first: those at most
+    /// [`ENTRY_STEPS`] farther off than the nearest one. Takes the first of these scales of the
+    /// grid that has some. Returns false if there are none.
     pub(crate) fn entries(
         &self,
         from: Cell,
         (grid, scales): (&mut LocalGrid, &[i32]),
-        accepts: impl Fn(Site) -> bool,
+        among: impl Fn(usize) -> u32,
         mut visit: impl FnMut(Site, u32),
     ) -> bool {
         scales.iter().any(|&scale| {
             self.read(grid, from, scale);
-            self.entries_in(grid, from, &accepts, &mut visit)
+            self.entries_in(grid, from, &among, &mut visit)
         })
     }
 
@@ -106,11 +107,11 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         &self,
         grid: &LocalGrid,
         from: Cell,
-        accepts: &impl Fn(Site) -> bool,
+        among: &impl Fn(usize) -> u32,
         visit: &mut impl FnMut(Site, u32),
     ) -> bool {
         let scale = grid.scale as u32;
-        let mut targets = self.targets(grid, accepts);
+        let mut targets = self.targets(grid, among);
         let mut reached: Rows = [0; SIDE];
         if let Some(place) = grid.place(from) {
             LocalGrid::put(&mut reached, place);
@@ -122,7 +123,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
                 if let Some(row) = targets.get_mut(y) {
                     *row &= !met;
                 }
-                for site in self.sites_in_row(grid, y, met, accepts) {
+                for site in self.sites_in_row(grid, y, met, among) {
                     most.get_or_insert(steps + 2 * ENTRY_STEPS / scale);
                     visit(site, steps * scale / 2);
                 }
@@ -134,13 +135,12 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         most.is_some()
     }
 
-    /// Returns the centre cell nearest to `from` in a straight line that `accepts` holds for, with
-    /// the coarse cells on the line there, without the centre cell itself.
-    pub(crate) fn nearest_in_line<A: Fn(Site) -> bool>(
+    /// Returns the centre cell nearest to `from` in a straight line, with the coarse cells on the
+    /// line there, without the centre cell itself.
+    pub(crate) fn nearest_in_line(
         &self,
         from: Cell,
-        accepts: A,
-    ) -> Option<(Site, impl Iterator<Item = Cell> + use<A, TILES, SLOTS>)> {
+    ) -> Option<(Site, impl Iterator<Item = Cell> + use<TILES, SLOTS>)> {
         // A pose may be anywhere. What is farther off than a map is large has no way to it.
         let apart = |site: Site| {
             let to = self.frame.cell(site);
@@ -151,7 +151,6 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         let (site, (dx, dy)) = self
             .cells
             .sites()
-            .filter(|&site| accepts(site))
             .filter_map(|site| Some((site, apart(site)?)))
             .min_by_key(|(_, (dx, dy))| dx * dx + dy * dy)?;
         let steps = dx.abs().max(dy.abs()) / 2;
@@ -170,7 +169,7 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
     }
 
     /// Returns the passable cells of the grid that hold a centre cell.
-    fn targets(&self, grid: &LocalGrid, accepts: impl Fn(Site) -> bool) -> Rows {
+    fn targets(&self, grid: &LocalGrid, among: impl Fn(usize) -> u32) -> Rows {
         let mut targets: Rows = [0; SIDE];
         let tiling = self.cells.tiling();
         let pages = tiling
@@ -182,11 +181,9 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
                 continue;
             }
             for (index, &word) in (place * PAGE_WORDS..).zip(words) {
-                for bit in ones(word) {
-                    let site = tiling.site(index, bit);
-                    if accepts(site) {
-                        grid.mark(&mut targets, self.frame.cell(site));
-                    }
+                for bit in ones(word & among(index)) {
+                    let cell = self.frame.cell(tiling.site(index, bit));
+                    grid.mark(&mut targets, cell);
                 }
             }
         }
@@ -199,24 +196,19 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
         grid: &LocalGrid,
         y: usize,
         places: u64,
-        accepts: impl Fn(Site) -> bool,
+        among: impl Fn(usize) -> u32,
     ) -> impl Iterator<Item = Site> {
         ones64(places).filter_map(move |x| {
             let place = Site {
                 x: x as u16,
                 y: y as u16,
             };
-            self.site_in(grid, place, &accepts)
+            self.site_in(grid, place, &among)
         })
     }
 
     /// Returns a centre cell in a cell of the grid.
-    fn site_in(
-        &self,
-        grid: &LocalGrid,
-        place: Site,
-        accepts: impl Fn(Site) -> bool,
-    ) -> Option<Site> {
+    fn site_in(&self, grid: &LocalGrid, place: Site, among: impl Fn(usize) -> u32) -> Option<Site> {
         let least = Cell {
             x: grid.origin.x + i32::from(place.x) * grid.scale,
             y: grid.origin.y + i32::from(place.y) * grid.scale,
@@ -228,7 +220,9 @@ impl<const TILES: usize, const SLOTS: usize> Centres<'_, TILES, SLOTS> {
                 y: least.y + k / coarse * 2,
             };
             let site = self.frame.site(cell)?;
-            (self.cells.get(site) && accepts(site)).then_some(site)
+            let index = self.cells.tiling().index(site)?;
+            let centres = at(self.cells.words(), index) & among(index);
+            (centres & site.bit() != 0).then_some(site)
         })
     }
 }

@@ -53,7 +53,7 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
                 None => break,
             }
         }
-        if !entered && let Some((site, line)) = self.centres.nearest_in_line(robot, |_| true) {
+        if !entered && let Some((site, line)) = self.centres.nearest_in_line(robot) {
             let entry = (site, line.count() as u32);
             let _ = self.run(&mut wave, &[entry], marks, &mut visit);
         }
@@ -75,8 +75,8 @@ impl<const TILES: usize, const SLOTS: usize> PathSearch<'_, TILES, SLOTS> {
             space,
             local_grid,
         } = self;
-        let is_new = |site| space.residues.get(site).is_none();
-        let any = centres.entries(robot, (local_grid, scales), is_new, |site, steps| {
+        let are_new = |index| space.residues.unreached(index);
+        let any = centres.entries(robot, (local_grid, scales), are_new, |site, steps| {
             // What does not fit is farther off than others.
             let _ = entries.push((site, steps));
         });

@@ -51,15 +51,15 @@ impl<'a, const TILES: usize, const SLOTS: usize> PathSearch<'a, TILES, SLOTS> {
     /// Returns the centre cell nearest to a place that the wave reached, and the coarse steps
     /// there.
     pub(crate) fn entry(&mut self, from: Cell) -> Option<(Site, u32)> {
-        let is_reached = |site| self.space.residues.get(site).is_some();
-        self.centres.nearest(from, self.local_grid, is_reached)
+        let are_reached = |index| !self.space.residues.unreached(index);
+        self.centres.nearest(from, self.local_grid, are_reached)
     }
 
     /// Returns the centre cell nearest to a place in the grid of a scale, and the coarse steps
     /// there.
     pub(crate) fn entry_at_scale(&mut self, from: Cell, scale: i32) -> Option<(Site, u32)> {
         self.centres
-            .nearest_at_scale(from, (self.local_grid, scale), &|_| true)
+            .nearest_at_scale(from, (self.local_grid, scale), &|_| u32::MAX)
     }
 
     /// Returns the path from a place to where the wave began; `None` if no centre cell that the
@@ -94,7 +94,9 @@ pub(crate) fn path_between<const TILES: usize, const SLOTS: usize>(
     scratch: &mut PlanningScratch<'_>,
 ) -> Option<Path> {
     let mut search = PathSearch::open(centres, scratch)?;
-    let (nearest, _) = search.centres.nearest(to, search.local_grid, |_| true)?;
+    let (nearest, _) = search
+        .centres
+        .nearest(to, search.local_grid, |_| u32::MAX)?;
     search.spread(core::iter::once(nearest));
     search.path(from)
 }

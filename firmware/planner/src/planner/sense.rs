@@ -162,15 +162,20 @@ pub(super) fn level_scans<'a>(
 /// Returns true if the fence allows every cell under the hull of a robot at `pose`.
 #[must_use]
 pub fn may_stand(config: &Config, pose: &Pose) -> bool {
+    config.fence.is_empty() || fence_allows_hull(config, pose)
+}
+
+/// Returns true as [`may_stand`]. It is not inlined: its rows must not be on the stack of a step.
+#[inline(never)]
+fn fence_allows_hull(config: &Config, pose: &Pose) -> bool {
     // A row of the fence costs as much as a cell of it.
     let (corner, rows) = under_hull(config, pose);
     let mut rows = (corner.y..).zip(rows).filter(|(_, row)| *row != 0);
-    config.fence.is_empty() || rows.all(|(y, row)| config.fence.row(corner.x, y) & row == 0)
+    rows.all(|(y, row)| config.fence.row(corner.x, y) & row == 0)
 }
 
 /// Returns the cells under the hull of a robot, in a square of 64 cells, and the square's corner.
 /// The longest hull has a diagonal of 57 cells.
-#[inline(never)]
 fn under_hull(config: &Config, pose: &Pose) -> (Cell, [u64; 64]) {
     let (length_m, width_m) = (config.robot.half_length_m, config.robot.half_width_m);
     // Places across a hull, at most half a cell apart, its edges included.

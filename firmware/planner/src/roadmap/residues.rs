@@ -88,7 +88,7 @@ impl<'a> Residues<'a> {
 
     /// Returns the cells of a word that are not reached.
     #[inline(always)]
-    pub(super) fn unreached(&self, index: usize) -> u32 {
+    pub(crate) fn unreached(&self, index: usize) -> u32 {
         let [low, high] = self.pair(index);
         low & high
     }

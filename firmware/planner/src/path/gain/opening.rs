@@ -32,7 +32,10 @@ impl View {
         let mut reached: Cells = array::from_fn(|y| inside(y, 0));
         flood::spread(&open, &mut reached);
 
-        let beyond = |y| self.passable(y, footprint) & self.row(y)[0] & inside(y, self.reach);
+        let beyond = |y| match self.row(y)[0] & inside(y, self.reach) {
+            0 => 0,
+            unknown => unknown & self.passable(y, footprint),
+        };
         for (y, (open, reached)) in open.iter_mut().zip(&mut reached).enumerate() {
             *open = beyond(y);
             *reached &= *open;
