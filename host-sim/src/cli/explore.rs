@@ -194,7 +194,7 @@ fn explore(
         ));
     }
     let recorder = recorder(args, run)?.map(Rc::new);
-    onlooker.record(recorder.clone());
+    onlooker.record(recorder.iter().cloned().collect());
     let profiler = profiler(prepared, run)?;
     let mut keeping = resume::keeping(args, run);
     let beside = Beside {

@@ -57,8 +57,8 @@ pub(super) struct Onlooker {
     after_ms: u32,
     /// The live page, which keeps the pace then.
     live: Option<Observer>,
-    /// Where the run is recorded.
-    recorder: Option<Rc<Recorder>>,
+    /// Where the run is recorded, robot by robot.
+    recorders: Vec<Rc<Recorder>>,
 }
 
 impl Onlooker {
@@ -80,7 +80,7 @@ impl Onlooker {
             began: pace.map(|pace| (Instant::now(), pace)),
             after_ms: 0,
             live: None,
-            recorder: None,
+            recorders: Vec::new(),
         }
     }
 
@@ -100,9 +100,9 @@ impl Onlooker {
         self.began = self.began.filter(|_| self.live.is_none());
     }
 
-    /// Records what is seen.
-    pub(super) fn record(&mut self, recorder: Option<Rc<Recorder>>) {
-        self.recorder = recorder;
+    /// Records what is seen of each robot.
+    pub(super) fn record(&mut self, recorders: Vec<Rc<Recorder>>) {
+        self.recorders = recorders;
     }
 
     /// Returns the live page.
@@ -141,11 +141,15 @@ impl Watch for Onlooker {
     }
 
     fn see(&mut self, sight: &mut Sight<'_>) {
-        if let Some(recorder) = &self.recorder {
-            recorder.see(sight);
-        }
+        self.see_robot(0, sight);
         if let Some(live) = &mut self.live {
             live.see(sight);
+        }
+    }
+
+    fn see_robot(&mut self, robot: usize, sight: &mut Sight<'_>) {
+        if let Some(recorder) = self.recorders.get(robot) {
+            recorder.see(sight);
         }
     }
 }

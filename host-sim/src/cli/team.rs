@@ -1,6 +1,7 @@
 //! `host-sim team`: several robots explore one world; writes a folder and a report.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use anyhow::{Context as _, Result, bail};
 use clap::Args;
@@ -12,7 +13,7 @@ use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::picture::{TeamScene, team_png};
 use host_sim::radio::{MOST_ROBOTS, RadioSpec};
 use host_sim::report::tum::Stamped;
-use host_sim::report::{TeamReport, folder};
+use host_sim::report::{MadeBy, TeamReport, folder};
 use host_sim::slam::SlamPlace;
 use host_sim::trial::mission::on_device;
 use host_sim::trial::surprises::surprises;
@@ -27,6 +28,7 @@ use super::explore::with_start;
 use super::mission::mission;
 use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
+use super::recording::Recorder;
 use super::robot::RobotArgs;
 use super::values::{slam_place, start};
 use super::{cycles, made_by, note, note_build, say, strategies};
@@ -107,6 +109,10 @@ pub(super) struct TeamArgs {
     /// Where loops are closed and the maps corrected, robot by robot: off, host
     #[arg(long, value_name = "WHERE", default_value = "off", value_parser = slam_place)]
     slam: SlamPlace,
+    /// Record each robot into FOLDER/robot-N.mcap, as explore --record does; --force replaces
+    /// files that are there
+    #[arg(long, value_name = "FOLDER")]
+    record: Option<PathBuf>,
     #[command(flatten)]
     pace: PaceArgs,
     #[command(flatten)]
@@ -163,11 +169,24 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
     for text in surprises(&team.mission, &world) {
         note(&format!("host-sim: {}: {text}", world.name()));
     }
+    let recorders = recorders(args, &made_by)?;
     let mut planners = open(args, &links)?;
+    if !recorders.is_empty() {
+        let pairs = planners.into_iter().zip(&recorders);
+        planners = pairs.map(|(link, recorder)| recorder.tap(link)).collect();
+    }
     let interrupt = Interrupt::listen()?;
     let mut onlooker = Onlooker::new(world.name(), args.pace.realtime.then_some(1.0), interrupt);
+    onlooker.record(recorders.clone());
     let result = explore(&team, &world, &mut planners, &mut onlooker);
     onlooker.finish();
+    for (robot, recorder) in recorders.iter().enumerate() {
+        let report = result
+            .as_ref()
+            .ok()
+            .map(|(report, _)| &report.robots[robot]);
+        recorder.end(report.map(|it| &it.report));
+    }
     let (mut report, record) = match result {
         Err(TeamError::Robot { robot, error }) => {
             let link = links.get(robot).map(ToString::to_string);
@@ -246,6 +265,20 @@ fn open(args: &TeamArgs, links: &[LinkSpec]) -> Result<Vec<Box<dyn Link>>> {
             .with_context(|| format!("--link {link}"))
     };
     links.iter().map(open).collect()
+}
+
+/// Begins the recording of each robot; none without `--record`.
+fn recorders(args: &TeamArgs, made_by: &MadeBy) -> Result<Vec<Rc<Recorder>>> {
+    let Some(folder) = &args.record else {
+        return Ok(Vec::new());
+    };
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("--record {}: the folder cannot be made", folder.display()))?;
+    let begin = |robot: usize| {
+        let file = folder.join(format!("robot-{robot}.mcap"));
+        Recorder::open(&file, made_by, args.folder.force).map(Rc::new)
+    };
+    (0..args.robots).map(begin).collect()
 }
 
 /// Writes the team's files, and each robot's files into a folder of its own.

@@ -13,6 +13,9 @@ pub trait Watch {
     /// Called then with all that the step knows, before the robot drives. Whoever watches may look
     /// and make requests of the device, as [`Sight::request`] does.
     fn see(&mut self, _sight: &mut Sight<'_>) {}
+
+    /// As [`Self::see`], for a robot of a team by its number. [`Self::see`] is not called then.
+    fn see_robot(&mut self, _robot: usize, _sight: &mut Sight<'_>) {}
 }
 
 /// Watches nothing; the run goes on.

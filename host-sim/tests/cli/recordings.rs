@@ -118,6 +118,41 @@ fn corrections_and_resets_are_done_again() {
     }
 }
 
+/// Robots that talk over a bad radio, one of which leaves and joins again.
+#[test]
+fn each_robot_of_a_team_is_recorded_and_done_again() {
+    const TEAM: &str = "team hall --odometry noisy --start-error 0.3,5 --radio loss=0.2 \
+                        --leave 1@10 --join 1@20 --time-limit 40 --json";
+    let folder = folder();
+    let run = |more: &[&str]| {
+        let words: Vec<&str> = TEAM
+            .split_whitespace()
+            .chain(more.iter().copied())
+            .collect();
+        let (_, stdout, stderr) = outcome(&folder, &words);
+        let report = reports(&stdout).pop().unwrap_or_else(|| panic!("{stderr}"));
+        [0, 1].map(|robot| report["robots"][robot]["digest"].clone())
+    };
+    let digests = run(&["--record", "team"]);
+    assert!(digests[0].is_string(), "{digests:?}");
+    assert_eq!(run(&["--force"]), digests, "without a recording");
+    for (robot, least) in [(0, 200), (1, 140)] {
+        let name = format!("team/robot-{robot}.mcap");
+        let bytes = fs::read(folder.path().join(&name)).expect("a file");
+        let topics = topics(&bytes);
+        assert!(topics["/scan"] >= least, "{name}: {}", topics["/scan"]);
+        assert!(topics["/map"] > 1, "{name}: {}", topics["/map"]);
+        let (status, replayed, stderr) = replayed(&folder, &name, &[]);
+        assert_eq!((status, stderr.as_str()), (0, ""), "{name}");
+        assert!(replayed["commands"].as_u64() >= Some(least as u64));
+    }
+    let again: Vec<&str> = TEAM
+        .split_whitespace()
+        .chain(["--out", "o", "--record", "team"])
+        .collect();
+    refused(&folder, &again, &["robot-0.mcap", "--force"]);
+}
+
 #[test]
 fn another_device_is_told_from_the_recorded_one() {
     let (folder, _) = recorded(&[]);

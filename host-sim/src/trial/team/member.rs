@@ -19,8 +19,9 @@ use super::super::freeze::FreezeDetector;
 use super::super::itinerary::Itinerary;
 use super::super::record::Record;
 use super::super::series::Series;
+use super::super::sight::Sight;
 use super::super::snapshot::{self, Snapshot};
-use super::super::{Cast, Corrector, Ending, Setup, ended, step};
+use super::super::{Cast, Corrector, Ending, Setup, Watch, ended, step};
 use super::copy::TeamCopy;
 use super::seat::{Seat, Witness};
 use crate::link::said::Said;
@@ -62,6 +63,8 @@ pub(super) struct Common<'a, 'w> {
     pub(super) stations: &'a [Station],
     /// Coverage by all robots together.
     pub(super) coverage: &'a mut Coverage,
+    /// Who watches the team.
+    pub(super) watch: &'a mut dyn Watch,
 }
 
 /// What closes a robot's loops: its graph, and the copy of its map while it explores.
@@ -260,8 +263,9 @@ impl<'a> Member<'a> {
         };
         let mut series: Series<Snapshot> = Series::new(0);
         // A team takes no orders.
-        let orders = (&mut self.record, &mut Itinerary::default());
-        let (_, command) = step(&self.setup, &mut cast, orders, &mut series, false)?;
+        let mut orders = Itinerary::default();
+        let taken = (&mut self.record, &mut orders);
+        let (observation, command) = step(&self.setup, &mut cast, taken, &mut series, false)?;
         let ending = ended(
             &self.setup,
             &mut (),
@@ -269,6 +273,16 @@ impl<'a> Member<'a> {
             &self.record,
             &command,
         );
+        let mut sight = Sight {
+            setup: &self.setup,
+            observation: &observation,
+            mirror: None,
+            ending: ending.as_ref(),
+            record: &mut self.record,
+            itinerary: &mut orders,
+            link: self.link,
+        };
+        common.watch.see_robot(self.number, &mut sight);
         let Some(ending) = ending else {
             return Ok(Some(command.velocity));
         };

@@ -208,7 +208,7 @@ impl<'w> Run<'_, 'w> {
             let now_ms = fleet.robots()[0].time_ms();
             self.come_and_go([last_ms, now_ms]);
             last_ms = now_ms;
-            self.period(fleet);
+            self.period(fleet, watch);
             let progress = self.progress(now_ms);
             if !self.interrupted && watch.step(&progress) == Flow::Interrupt {
                 self.interrupted = true;
@@ -236,7 +236,7 @@ impl<'w> Run<'_, 'w> {
         let (mut passed_ms, mut quiet_ms) = (0, 0);
         while passed_ms < least_ms || (passed_ms < most_ms && quiet_ms < QUIET_MS) {
             let said = self.said();
-            self.period(fleet);
+            self.period(fleet, &mut ());
             // Every robot that talks says a beacon.
             let is_quiet = self.said() - said <= self.members.len() as u64;
             passed_ms += period_ms.max(1);
@@ -283,7 +283,7 @@ impl<'w> Run<'_, 'w> {
     }
 
     /// Lets every robot take part, and all drive.
-    fn period(&mut self, fleet: &mut Fleet<'w>) {
+    fn period(&mut self, fleet: &mut Fleet<'w>, watch: &mut dyn Watch) {
         let listens = self.members.iter().map(Member::listens);
         let stations: Vec<Station> = fleet
             .robots()
@@ -299,6 +299,7 @@ impl<'w> Run<'_, 'w> {
             radio: &mut self.radio,
             stations: &stations,
             coverage: &mut self.coverage,
+            watch,
         };
         let members = self.members.iter_mut();
         let commands: Vec<Option<wire::Twist>> = members
