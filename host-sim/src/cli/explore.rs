@@ -55,9 +55,7 @@ pub(super) fn run(args: &ExploreArgs) -> Result<bool> {
             break;
         }
     }
-    if let Some(live) = &live {
-        live::stay(live, &interrupt);
-    }
+    live::stay(live.as_slice(), &interrupt);
     Ok(all_explored)
 }
 
@@ -185,7 +183,8 @@ fn explore(
     }
     let mut onlooker = Onlooker::new(name, pace(args), interrupt.clone());
     onlooker.log(args.log == Some(LogArg::Mission));
-    onlooker.show(live.map(|live| live::observer(live, &run.mission, &run.world, interrupt)));
+    let shown = live.map(|live| live::observer(live, &run.mission, name.into(), interrupt));
+    onlooker.show(shown.into_iter().collect());
     if let Some(state) = &run.resumed {
         onlooker.begin_after(state.time_ms);
         note(&format!(
@@ -210,7 +209,10 @@ fn explore(
     if let Some(recorder) = recorder {
         recorder.end(result.as_ref().ok().map(|(report, _)| report));
     }
-    live::end(onlooker.live(), &result);
+    for page in onlooker.pages() {
+        let report = result.as_ref().map(|(report, _)| report);
+        live::end(page, report.map_err(|error| format!("{error:#}")));
+    }
     let (mut report, record) = result?;
     if let Some(error) = keeping.and_then(|it| it.failure) {
         let file = run.folder.join(state::NAME);

@@ -7,9 +7,7 @@ use anyhow::{Context as _, Result};
 
 use host_sim::live::{About, Counts, Limits, Live, Observer};
 use host_sim::report::Report;
-use host_sim::trial::Record;
 use host_sim::trial::mission::Mission;
-use host_sim::world::World;
 
 use super::note;
 use super::progress::Interrupt;
@@ -23,16 +21,37 @@ const LINGER: Duration = Duration::from_secs(60);
 pub(super) struct LiveArg(pub(super) Option<SocketAddr>);
 
 /// Opens the page and prints its address.
-pub(super) fn open(LiveArg(address): LiveArg, pace: Option<f64>) -> Result<Live> {
+pub(super) fn open(place: LiveArg, pace: Option<f64>) -> Result<Live> {
+    open_at(place, pace, 0, "live page")
+}
+
+/// Opens a page of each robot of a team, at ports one after another, and prints their addresses.
+pub(super) fn open_team(place: LiveArg, pace: Option<f64>, robots: usize) -> Result<Vec<Live>> {
+    let page = |robot| open_at(place, pace, robot, &format!("live page of robot {robot}"));
+    (0..robots).map(page).collect()
+}
+
+/// Opens a page, so many ports behind the place that was asked for.
+fn open_at(LiveArg(asked): LiveArg, pace: Option<f64>, behind: usize, name: &str) -> Result<Live> {
     let (pace, limits) = (pace.unwrap_or(0.0), Limits::default());
-    let live = match address {
-        Some(address) => Live::open(address, pace, limits)
+    let mut address = asked.unwrap_or(host_sim::live::ADDRESS);
+    // Port 0 is any free one.
+    if address.port() != 0 {
+        let port = u16::try_from(usize::from(address.port()) + behind);
+        let port = port.ok().with_context(|| {
+            format!("--live {address}: there is no port for robot {behind}; give a lower one")
+        })?;
+        address.set_port(port);
+    }
+    let live = match asked {
+        Some(_) => Live::open(address, pace, limits)
             .with_context(|| format!("--live {address}: no page can be served there")),
-        None => Live::usual(pace, limits).context("--live: no page can be served on loopback"),
+        None => Live::open_near(address, pace, limits)
+            .context("--live: no page can be served on loopback"),
     }?;
-    note(&format!("host-sim: live page at {}", live.url()));
-    if live.address() != host_sim::live::ADDRESS && address.is_none() {
-        let usual = host_sim::live::ADDRESS.port();
+    note(&format!("host-sim: {name} at {}", live.url()));
+    if asked.is_none() && live.address() != address {
+        let usual = address.port();
         note(&format!(
             "host-sim: port {usual} is in use, so the page has another one"
         ));
@@ -40,15 +59,15 @@ pub(super) fn open(LiveArg(address): LiveArg, pace: Option<f64>) -> Result<Live>
     Ok(live)
 }
 
-/// Returns what shows a run.
+/// Returns what shows a run of this name.
 pub(super) fn observer(
     live: &Live,
     mission: &Mission,
-    world: &World,
+    name: String,
     interrupt: &Interrupt,
 ) -> Observer {
     let about = About {
-        world: world.name().into(),
+        world: name,
         strategy: mission.strategy.clone(),
         link: mission.link.clone(),
         seed: mission.seed,
@@ -57,28 +76,33 @@ pub(super) fn observer(
     live.observer(about, move || interrupt.pressed())
 }
 
-/// Shows the end of a run.
-pub(super) fn end(observer: Option<&mut Observer>, result: &Result<(Report, Record)>) {
-    let Some(observer) = observer else {
-        return;
-    };
+/// Shows the end of a run: its report, or why there is none.
+pub(super) fn end(observer: &mut Observer, result: Result<&Report, String>) {
     match result {
-        Ok((report, _)) => observer.end(report),
-        Err(error) => observer.fail(&format!("{error:#}")),
+        Ok(report) => observer.end(report),
+        Err(why) => observer.fail(&why),
     }
 }
 
-/// Keeps the page while someone looks at it, and says what was refused.
-pub(super) fn stay(live: &Live, interrupt: &Interrupt) {
+/// Keeps the pages while someone looks at one, and says what was refused.
+pub(super) fn stay(pages: &[Live], interrupt: &Interrupt) {
+    if pages.is_empty() {
+        return;
+    }
     if !interrupt.pressed() {
+        let urls: Vec<String> = pages.iter().map(Live::url).collect();
+        let (subject, it) = match urls.len() {
+            1 => ("the page stays", "it is"),
+            _ => ("the pages stay", "one is"),
+        };
         note(&format!(
-            "host-sim: the page stays at {} while it is open, and {} s; Ctrl-C ends it",
-            live.url(),
+            "host-sim: {subject} at {} while {it} open, and {} s; Ctrl-C ends it",
+            urls.join(", "),
             LINGER.as_secs()
         ));
     }
-    live.stay(LINGER, || interrupt.pressed());
-    if let Some(text) = refused(&live.counts()) {
+    Live::stay(pages, LINGER, || interrupt.pressed());
+    for text in pages.iter().filter_map(|page| refused(&page.counts())) {
         note(&format!("host-sim: live page: {text}"));
     }
 }

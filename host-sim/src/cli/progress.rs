@@ -55,8 +55,8 @@ pub(super) struct Onlooker {
     began: Option<(Instant, f64)>,
     /// Simulated time up to which the run is made again, milliseconds.
     after_ms: u32,
-    /// The live page, which keeps the pace then.
-    live: Option<Observer>,
+    /// The live pages, robot by robot, which keep the pace then.
+    pages: Vec<Observer>,
     /// Where the run is recorded, robot by robot.
     recorders: Vec<Rc<Recorder>>,
 }
@@ -79,7 +79,7 @@ impl Onlooker {
             log: None,
             began: pace.map(|pace| (Instant::now(), pace)),
             after_ms: 0,
-            live: None,
+            pages: Vec::new(),
             recorders: Vec::new(),
         }
     }
@@ -94,10 +94,10 @@ impl Onlooker {
         self.after_ms = time_ms;
     }
 
-    /// Lets a live page see the run, and keep its pace.
-    pub(super) fn show(&mut self, live: Option<Observer>) {
-        self.live = live;
-        self.began = self.began.filter(|_| self.live.is_none());
+    /// Lets the live page of each robot see the run, and keep its pace.
+    pub(super) fn show(&mut self, pages: Vec<Observer>) {
+        self.pages = pages;
+        self.began = self.began.filter(|_| self.pages.is_empty());
     }
 
     /// Records what is seen of each robot.
@@ -105,9 +105,9 @@ impl Onlooker {
         self.recorders = recorders;
     }
 
-    /// Returns the live page.
-    pub(super) const fn live(&mut self) -> Option<&mut Observer> {
-        self.live.as_mut()
+    /// Returns the live pages.
+    pub(super) fn pages(&mut self) -> &mut [Observer] {
+        &mut self.pages
     }
 
     /// Removes the line.
@@ -142,14 +142,14 @@ impl Watch for Onlooker {
 
     fn see(&mut self, sight: &mut Sight<'_>) {
         self.see_robot(0, sight);
-        if let Some(live) = &mut self.live {
-            live.see(sight);
-        }
     }
 
     fn see_robot(&mut self, robot: usize, sight: &mut Sight<'_>) {
         if let Some(recorder) = self.recorders.get(robot) {
             recorder.see(sight);
+        }
+        if let Some(page) = self.pages.get_mut(robot) {
+            page.see(sight);
         }
     }
 }

@@ -25,13 +25,14 @@ use host_sim::world::World;
 use super::args::{ExploreArgs, GroundArg, OdometryArg};
 use super::common::{CommonArgs, FolderArgs, PaceArgs, SpaceArgs};
 use super::explore::with_start;
+use super::live::LiveArg;
 use super::mission::mission;
 use super::pictures::Album;
 use super::progress::{Interrupt, Onlooker};
 use super::recording::Recorder;
 use super::robot::RobotArgs;
-use super::values::{slam_place, start};
-use super::{cycles, made_by, note, note_build, say, strategies};
+use super::values::{live as live_place, slam_place, start};
+use super::{cycles, live, made_by, note, note_build, say, strategies};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct TeamArgs {
@@ -113,6 +114,16 @@ pub(super) struct TeamArgs {
     /// files that are there
     #[arg(long, value_name = "FOLDER")]
     record: Option<PathBuf>,
+    /// Serve a page of each robot while they run, at ports one after another from ADDR:PORT on,
+    /// else from 127.0.0.1:8047; as explore --live, but a robot of a team takes no requests
+    #[arg(
+        long,
+        value_name = "ADDR:PORT",
+        num_args = 0..=1,
+        default_missing_value = "usual",
+        value_parser = live_place
+    )]
+    live: Option<LiveArg>,
     #[command(flatten)]
     pace: PaceArgs,
     #[command(flatten)]
@@ -176,7 +187,17 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
         planners = pairs.map(|(link, recorder)| recorder.tap(link)).collect();
     }
     let interrupt = Interrupt::listen()?;
-    let mut onlooker = Onlooker::new(world.name(), args.pace.realtime.then_some(1.0), interrupt);
+    let pace = args.pace.realtime.then_some(1.0);
+    let pages = args
+        .live
+        .map(|place| live::open_team(place, pace, args.robots));
+    let pages = pages.transpose()?.unwrap_or_default();
+    let shown = pages.iter().enumerate().map(|(robot, page)| {
+        let name = format!("{}, robot {robot}", world.name());
+        live::observer(page, &team.mission, name, &interrupt)
+    });
+    let mut onlooker = Onlooker::new(world.name(), pace, interrupt.clone());
+    onlooker.show(shown.collect());
     onlooker.record(recorders.clone());
     let result = explore(&team, &world, &mut planners, &mut onlooker);
     onlooker.finish();
@@ -186,6 +207,12 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
             .ok()
             .map(|(report, _)| &report.robots[robot]);
         recorder.end(report.map(|it| &it.report));
+    }
+    for (robot, page) in onlooker.pages().iter_mut().enumerate() {
+        let report = result
+            .as_ref()
+            .map(|(report, _)| &report.robots[robot].report);
+        live::end(page, report.map_err(ToString::to_string));
     }
     let (mut report, record) = match result {
         Err(TeamError::Robot { robot, error }) => {
@@ -200,6 +227,7 @@ pub(super) fn run(args: &TeamArgs) -> Result<bool> {
     report.whole.made_by = Some(made_by);
     write(&folder, &world, &report, &record)?;
     print(args, &report, &record, &folder)?;
+    live::stay(&pages, &interrupt);
     Ok(report.whole.explored())
 }
 

@@ -191,13 +191,13 @@ impl Live {
         })
     }
 
-    /// As [`Live::open`] at the usual address, or at a free port if another program has it.
+    /// As [`Live::open`], at a free port if another program has this one.
     ///
     /// # Errors
     /// As [`Live::open`].
-    pub fn usual(pace: f64, limits: Limits) -> io::Result<Self> {
-        Self::open(ADDRESS, pace, limits)
-            .or_else(|_| Self::open(SocketAddr::new(ADDRESS.ip(), 0), pace, limits))
+    pub fn open_near(address: SocketAddr, pace: f64, limits: Limits) -> io::Result<Self> {
+        Self::open(address, pace, limits)
+            .or_else(|_| Self::open(SocketAddr::new(address.ip(), 0), pace, limits))
     }
 
     /// Returns where it listens.
@@ -255,12 +255,12 @@ impl Live {
         }
     }
 
-    /// Keeps the page after the last run: until nobody has been connected for `linger`, or
+    /// Keeps pages after the last run: until nobody has been connected to any for `linger`, or
     /// `interrupted` says so.
-    pub fn stay(&self, linger: Duration, interrupted: impl Fn() -> bool) {
+    pub fn stay(pages: &[Self], linger: Duration, interrupted: impl Fn() -> bool) {
         let mut seen = Instant::now();
         while !interrupted() {
-            if self.shared.viewers() > 0 {
+            if pages.iter().any(|page| page.shared.viewers() > 0) {
                 seen = Instant::now();
             } else if seen.elapsed() >= linger {
                 return;

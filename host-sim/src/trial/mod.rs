@@ -195,7 +195,7 @@ fn drive(
             mirror: cast.survey.mirror().map(|mirror| &*mirror),
             ending: ended.as_ref(),
             record,
-            itinerary,
+            itinerary: Some(itinerary),
             link: cast.link,
         });
         if let Some(ending) = ended {

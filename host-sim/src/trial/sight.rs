@@ -36,7 +36,8 @@ pub struct Sight<'a> {
     /// What ends the run with this step; `None` if it goes on.
     pub ending: Option<&'a Ending>,
     pub(super) record: &'a mut Record,
-    pub(super) itinerary: &'a mut Itinerary,
+    /// `None` for a robot of a team, which takes no requests.
+    pub(super) itinerary: Option<&'a mut Itinerary>,
     pub(super) link: &'a mut dyn Link,
 }
 
@@ -90,15 +91,16 @@ impl Sight<'_> {
     #[must_use]
     pub fn waits(&self) -> bool {
         let status = self.step().map(|step| step.command.status);
-        self.itinerary.waits() || status == Some(Status::Paused)
+        let waits = self.itinerary.as_ref().is_some_and(|it| it.waits());
+        waits || status == Some(Status::Paused)
     }
 
     /// Makes a request of the device, and enters it in the record. *Resume* ends a pause; where the
     /// robot stands or drives by an earlier request, it goes on with what it did before.
     ///
     /// # Errors
-    /// As [`LinkError`]; [`LinkError::Refused`] if the device says no, the run has ended, or the
-    /// request is none that a viewer may make. A link that fails ends the run with the next step.
+    /// As [`LinkError`]; [`LinkError::Refused`] if the device says no, the run has ended, the robot
+    /// is one of a team, or the request is none that a viewer may make. A link that fails ends the run with the next step.
     pub fn request(&mut self, control: &Control) -> Result<Status, LinkError> {
         let answer = self.ask(control);
         let (words, done) = match &answer {
@@ -122,11 +124,15 @@ impl Sight<'_> {
         if self.ending.is_some() {
             return Err(LinkError::Refused("the run has ended".into()));
         }
+        let Some(itinerary) = self.itinerary.as_mut() else {
+            let why = "a robot of a team takes no requests of a viewer";
+            return Err(LinkError::Refused(why.into()));
+        };
         match control {
             Control::Pause | Control::Stop => self.link.control(control),
-            Control::Resume | Control::Explore => self.itinerary.resume(self.record, self.link),
+            Control::Resume | Control::Explore => itinerary.resume(self.record, self.link),
             Control::Home | Control::GoTo { .. } => {
-                self.itinerary.interject(control, self.record, self.link)
+                itinerary.interject(control, self.record, self.link)
             }
             Control::Start(_) | Control::Reset | Control::SetHome { .. } => Err(
                 LinkError::Refused("a viewer neither begins a session nor moves its home".into()),

@@ -5,6 +5,7 @@
 mod browser;
 mod client;
 mod hostile;
+mod team;
 
 use core::net::SocketAddr;
 use std::thread;

@@ -263,9 +263,8 @@ impl<'a> Member<'a> {
         };
         let mut series: Series<Snapshot> = Series::new(0);
         // A team takes no orders.
-        let mut orders = Itinerary::default();
-        let taken = (&mut self.record, &mut orders);
-        let (observation, command) = step(&self.setup, &mut cast, taken, &mut series, false)?;
+        let orders = (&mut self.record, &mut Itinerary::default());
+        let (observation, command) = step(&self.setup, &mut cast, orders, &mut series, false)?;
         let ending = ended(
             &self.setup,
             &mut (),
@@ -279,7 +278,7 @@ impl<'a> Member<'a> {
             mirror: None,
             ending: ending.as_ref(),
             record: &mut self.record,
-            itinerary: &mut orders,
+            itinerary: None,
             link: self.link,
         };
         common.watch.see_robot(self.number, &mut sight);
