@@ -100,7 +100,8 @@ impl Sight<'_> {
     ///
     /// # Errors
     /// As [`LinkError`]; [`LinkError::Refused`] if the device says no, the run has ended, the robot
-    /// is one of a team, or the request is none that a viewer may make. A link that fails ends the run with the next step.
+    /// is one of a team, or the request is none that a viewer may make. A link that fails ends the
+    /// run with the next step.
     pub fn request(&mut self, control: &Control) -> Result<Status, LinkError> {
         let answer = self.ask(control);
         let (words, done) = match &answer {

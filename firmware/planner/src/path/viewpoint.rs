@@ -47,6 +47,8 @@ const TRIES: u32 = 4;
 /// (measured: docs/MEASURED.md, "Instalments of a search for viewpoints"). The last block may add
 /// [`MOST_OVER`] cells and a gap's: `RAYS · (MOST_ON + MOST_BACK)` = 6,000.
 const CELLS_PER_STEP: i32 = 20_000;
+/// The same within a fence, which is asked for the unexplored cells at a ray's end.
+const FENCED_CELLS_PER_STEP: i32 = 10_000;
 /// Cells on rays by which a block may exceed an instalment. Beyond them the next one goes on at the
 /// block's next gap.
 const MOST_OVER: i32 = 6_000;
@@ -203,7 +205,10 @@ impl Search {
         residual: &mut ResidualFrontiers,
         (first, mut gap): (u16, u8),
     ) {
-        let mut left = CELLS_PER_STEP;
+        let mut left = match inputs.tiles.fence().is_empty() {
+            true => CELLS_PER_STEP,
+            false => FENCED_CELLS_PER_STEP,
+        };
         let mut number = first;
         while left > 0 {
             let place = usize::from(number / (ALONG * ALONG));

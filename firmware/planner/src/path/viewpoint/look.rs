@@ -61,9 +61,10 @@ fn look_on<const TILES: usize, const SLOTS: usize>(
     *walked += first + 1;
     let dark = first..first + LEAST_BEYOND;
     let middle = along(gap, ray, first + LEAST_BEYOND / 2);
-    let has_room = tiles.room(middle.x >> 5, middle.y >> 5).is_ok()
+    let is_dark = dark.clone().all(|on| is(Class::Unknown, on))
+        && tiles.room(middle.x >> 5, middle.y >> 5).is_ok()
         && dark
-            .clone()
+            .into_iter()
             .all(|on| tiles.fence().allows(along(gap, ray, on)));
-    (has_room && dark.into_iter().all(|on| is(Class::Unknown, on))).then_some(middle)
+    is_dark.then_some(middle)
 }
