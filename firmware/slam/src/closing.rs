@@ -20,7 +20,7 @@ use crate::correlation::Reach;
 use crate::graph::{Closure, Graph};
 use crate::matrix::{Matrix, diagonal, least_eigenvalue, sum, turned};
 use crate::pose::Pose;
-use crate::scan::{Laser, Scan};
+use crate::scan::{LASERS, Laser, Scan};
 use crate::workspace::Workspace;
 
 /// Way after which a keyframe is old, metres.
@@ -77,7 +77,8 @@ struct Candidate {
     reach: Reach,
 }
 
-/// Tries to close a loop at the newest keyframe, whose scan is given.
+/// Tries to close a loop at the newest keyframe, whose scan is given. Without `agreement` one
+/// closure is enough.
 pub(crate) fn try_to_close<
     const KEYS: usize,
     const LOOPS: usize,
@@ -86,8 +87,9 @@ pub(crate) fn try_to_close<
 >(
     graph: &mut Graph<KEYS, LOOPS, BEAMS>,
     waiting: &mut Option<Waiting>,
-    (laser, scan): (&Laser, &Scan<BEAMS>),
+    (lasers, scan): (&[Laser; LASERS], &Scan<BEAMS>),
     workspace: &mut Workspace<KEYS, SIDE>,
+    agreement: bool,
 ) -> Tried {
     let Some(newest) = graph.keys.len().checked_sub(1) else {
         return Tried::Nothing;
@@ -95,9 +97,17 @@ pub(crate) fn try_to_close<
     let Some(candidate) = candidate(graph, newest) else {
         return Tried::Nothing;
     };
-    let Some(found) = measure(graph, newest, &candidate, (laser, scan), workspace) else {
+    let Some(found) = measure(graph, newest, &candidate, (lasers, scan), workspace) else {
         return Tried::Refused;
     };
+    if !agreement {
+        let is_entered = graph.closures.push(found.closure).is_ok();
+        return if is_entered {
+            Tried::Closed
+        } else {
+            Tried::Refused
+        };
+    }
     let agrees = waiting
         .as_ref()
         .map(|last| last.agrees(&found, graph, newest));
@@ -197,7 +207,7 @@ fn measure<const KEYS: usize, const LOOPS: usize, const BEAMS: usize, const SIDE
     graph: &Graph<KEYS, LOOPS, BEAMS>,
     newest: usize,
     candidate: &Candidate,
-    (laser, scan): (&Laser, &Scan<BEAMS>),
+    (lasers, scan): (&[Laser; LASERS], &Scan<BEAMS>),
     workspace: &mut Workspace<KEYS, SIDE>,
 ) -> Option<Waiting> {
     let here = graph.keys.get(newest)?;
@@ -210,7 +220,7 @@ fn measure<const KEYS: usize, const LOOPS: usize, const BEAMS: usize, const SIDE
     let end = before(way_m + AROUND.0).max(number + AROUND.1);
     let end = end.min(before(here.way_m - RECENT_M));
     for key in graph.keys.iter().take(end).skip(first) {
-        let scan: Scan<BEAMS> = Scan::of(laser, &key.ranges_mm);
+        let scan: Scan<BEAMS> = Scan::of(lasers, &key.ranges_mm);
         workspace.grid.enter(&key.pose, &scan);
     }
     let grid = &workspace.grid;

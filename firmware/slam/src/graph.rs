@@ -17,9 +17,6 @@ use heapless::Vec;
 use crate::matrix::{Cholesky, Matrix, Vector, dot, times};
 use crate::pose::Pose;
 
-/// Φ of the scaling.
-const SCALING: f32 = 20.0;
-
 /// A keyframe: a scan, and where it was taken.
 #[derive(Clone, Debug)]
 pub(crate) struct Keyframe<const BEAMS: usize> {
@@ -53,6 +50,8 @@ pub(crate) struct Closure {
 /// The graph: at most `KEYS` keyframes and `LOOPS` closures.
 #[derive(Clone, Debug)]
 pub(crate) struct Graph<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> {
+    /// Φ of the scaling.
+    scaling: f32,
     pub(crate) keys: Vec<Keyframe<BEAMS>, KEYS>,
     pub(crate) closures: Vec<Closure, LOOPS>,
 }
@@ -63,17 +62,17 @@ impl Closure {
         from.between(to).minus(&self.measured)
     }
 
-    /// Returns the weight of a residual.
-    pub(crate) fn weight(&self, residual: &Vector) -> f32 {
-        let chi2 = dot(residual, &times(&self.information, residual));
-        let scale = (2.0 * SCALING / (SCALING + chi2)).min(1.0);
-        scale * scale
+    /// Returns χ² of a residual.
+    fn chi2(&self, residual: &Vector) -> f32 {
+        dot(residual, &times(&self.information, residual))
     }
 }
 
 impl<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> Graph<KEYS, LOOPS, BEAMS> {
-    pub(crate) const fn new() -> Self {
+    /// Returns an empty graph, for Φ of its scaling.
+    pub(crate) const fn new(scaling: f32) -> Self {
         Self {
+            scaling,
             keys: Vec::new(),
             closures: Vec::new(),
         }
@@ -129,11 +128,16 @@ impl<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> Graph<KEYS, LOOP
         });
         let closures = self.closures.iter().filter_map(|closure| {
             let [from, to] = self.ends(closure)?;
-            let residual = closure.residual(&from, &to);
-            let chi2 = dot(&residual, &times(&closure.information, &residual));
-            Some(robust(chi2))
+            let chi2 = closure.chi2(&closure.residual(&from, &to));
+            Some(robust(chi2, self.scaling))
         });
         chain.sum::<f32>() + closures.sum::<f32>()
+    }
+
+    /// Returns the weight of a closure's residual.
+    pub(crate) fn weight(&self, closure: &Closure, residual: &Vector) -> f32 {
+        let scale = 2.0 * self.scaling / (self.scaling + closure.chi2(residual));
+        scale.min(1.0) * scale.min(1.0)
     }
 
     /// Returns the poses of a closure's keyframes.
@@ -144,10 +148,10 @@ impl<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> Graph<KEYS, LOOP
 }
 
 /// Returns what a closure's χ² costs: χ² up to Φ, then flatter, at most 3 Φ. Its slope is s(χ²).
-fn robust(chi2: f32) -> f32 {
-    if chi2 <= SCALING {
+fn robust(chi2: f32, scaling: f32) -> f32 {
+    if chi2 <= scaling {
         chi2
     } else {
-        3.0 * SCALING - 4.0 * SCALING * SCALING / (SCALING + chi2)
+        3.0 * scaling - 4.0 * scaling * scaling / (scaling + chi2)
     }
 }

@@ -128,10 +128,9 @@ impl<const SIDE: usize> Grid<SIDE> {
 
     /// Enters a scan taken at a pose.
     pub(crate) fn enter<const BEAMS: usize>(&mut self, pose: &Pose, scan: &Scan<BEAMS>) {
-        let from = pose.point(scan.origin);
         for (k, beam) in scan.beams.iter().enumerate() {
             if k % FREE_STRIDE == 0 {
-                self.free_along(from, pose.point(beam.end), beam);
+                self.free_along(pose.point(beam.origin), pose.point(beam.end), beam);
             }
         }
         for beam in scan.hits() {
@@ -267,6 +266,7 @@ mod tests {
     /// A scan of one beam that ends 2 m ahead.
     fn ahead() -> Scan<4> {
         let beam = Beam {
+            origin: [0.0; 2],
             end: [2.04, 0.02],
             hit: true,
             normal: None,

@@ -35,6 +35,6 @@ mod workspace;
 
 pub use motion::Motion;
 pub use pose::Pose;
-pub use scan::Laser;
-pub use slam::{Config, Counts, Observed, Slam};
+pub use scan::{LASERS, Laser};
+pub use slam::{Config, Counts, Observed, Rules, Slam};
 pub use workspace::Workspace;

@@ -22,7 +22,10 @@ const LEAST_M: f32 = 0.12;
 /// Greatest distance of a neighbour from the surface's line, metres.
 const STRAIGHT_M: f32 = 0.04;
 
-/// A laser: where it is, and where its beams point. Beam i points at first + i·step.
+/// Most lasers of a robot.
+pub const LASERS: usize = 2;
+
+/// A level laser: where it is, and where its beams point. Beam i points at first + i·step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Laser {
     /// Metres ahead of the robot's centre.
@@ -33,13 +36,29 @@ pub struct Laser {
     pub first_rad: f32,
     /// From one beam to the next, radians.
     pub step_rad: f32,
+    /// Number of beams; 0 for a laser that is not there.
+    pub beams: usize,
     /// Range from which on a beam met nothing, metres.
     pub most_m: f32,
+}
+
+impl Laser {
+    /// A laser that is not there.
+    pub const NONE: Self = Self {
+        x_m: 0.0,
+        y_m: 0.0,
+        first_rad: 0.0,
+        step_rad: 0.0,
+        beams: 0,
+        most_m: 0.0,
+    };
 }
 
 /// The end of a beam.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Beam {
+    /// Where the beam begins, in the robot's frame, metres.
+    pub(crate) origin: [f32; 2],
     /// In the robot's frame, metres.
     pub(crate) end: [f32; 2],
     /// Something stands at the end.
@@ -48,12 +67,10 @@ pub(crate) struct Beam {
     pub(crate) normal: Option<[f32; 2]>,
 }
 
-/// The beams of a scan, at most `BEAMS`.
+/// The beams of all lasers, at most `BEAMS`.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scan<const BEAMS: usize> {
     pub(crate) beams: Vec<Beam, BEAMS>,
-    /// Where the beams begin, in the robot's frame.
-    pub(crate) origin: [f32; 2],
 }
 
 /// Returns the difference of two points.
@@ -66,25 +83,15 @@ fn length([x, y]: [f32; 2]) -> f32 {
 }
 
 impl<const BEAMS: usize> Scan<BEAMS> {
-    /// Reads the ranges of a scan. Beams beyond `BEAMS` are left out.
-    pub(crate) fn of(laser: &Laser, ranges_mm: &[u16]) -> Self {
-        let mut scan = Self {
-            beams: Vec::new(),
-            origin: [laser.x_m, laser.y_m],
-        };
-        for (k, &range_mm) in ranges_mm.iter().enumerate().take(BEAMS) {
-            if range_mm == 0 {
-                continue;
-            }
-            let range_m = f32::from(range_mm) * 1e-3;
-            let (sin, cos) = sin_cos(laser.first_rad + k as f32 * laser.step_rad);
-            let reach_m = range_m.min(laser.most_m);
-            // There is room: the loop takes at most as many.
-            let _ = scan.beams.push(Beam {
-                end: [laser.x_m + reach_m * cos, laser.y_m + reach_m * sin],
-                hit: range_m < laser.most_m,
-                normal: None,
-            });
+    /// Reads the ranges of the lasers, one laser after the other. Beams beyond `BEAMS` are left
+    /// out.
+    pub(crate) fn of(lasers: &[Laser; LASERS], ranges_mm: &[u16]) -> Self {
+        let mut scan = Self::default();
+        let mut rest = ranges_mm;
+        for laser in lasers {
+            let (own, others) = rest.split_at(laser.beams.min(rest.len()));
+            scan.read(laser, own);
+            rest = others;
         }
         for k in 0..scan.beams.len() {
             let normal = scan.normal(k);
@@ -93,6 +100,27 @@ impl<const BEAMS: usize> Scan<BEAMS> {
             }
         }
         scan
+    }
+
+    /// Reads the ranges of a laser.
+    fn read(&mut self, laser: &Laser, ranges_mm: &[u16]) {
+        for (k, &range_mm) in ranges_mm.iter().enumerate() {
+            if range_mm == 0 {
+                continue;
+            }
+            let range_m = f32::from(range_mm) * 1e-3;
+            let (sin, cos) = sin_cos(laser.first_rad + k as f32 * laser.step_rad);
+            let reach_m = range_m.min(laser.most_m);
+            let is_full = self.beams.push(Beam {
+                origin: [laser.x_m, laser.y_m],
+                end: [laser.x_m + reach_m * cos, laser.y_m + reach_m * sin],
+                hit: range_m < laser.most_m,
+                normal: None,
+            });
+            if is_full.is_err() {
+                return;
+            }
+        }
     }
 
     /// Returns the ends where something stands.
@@ -139,6 +167,7 @@ mod tests {
         y_m: 0.0,
         first_rad: -core::f32::consts::FRAC_PI_2,
         step_rad: core::f32::consts::PI / 180.0,
+        beams: 181,
         most_m: 8.0,
     };
 
@@ -155,7 +184,7 @@ mod tests {
                 }
             })
             .collect();
-        Scan::of(&LASER, &ranges)
+        Scan::of(&[LASER, Laser::NONE], &ranges)
     }
 
     #[test]
@@ -172,7 +201,25 @@ mod tests {
 
     #[test]
     fn a_reading_of_zero_is_none_and_too_many_are_left_out() {
-        let scan: Scan<4> = Scan::of(&LASER, &[1000, 0, 1000, 1000, 1000, 1000]);
-        assert_eq!(scan.beams.len(), 3);
+        let scan: Scan<4> = Scan::of(&[LASER, Laser::NONE], &[1000, 0, 1000, 1000, 1000, 1000]);
+        assert_eq!(scan.beams.len(), 4);
+    }
+
+    #[test]
+    fn the_beams_of_a_second_laser_begin_at_its_own_place() {
+        let ahead = Laser { beams: 2, ..LASER };
+        let back = Laser {
+            x_m: -0.2,
+            first_rad: core::f32::consts::PI,
+            beams: 1,
+            ..LASER
+        };
+        let scan: Scan<4> = Scan::of(&[ahead, back], &[1000, 2000, 3000, 4000]);
+        let [right, _, behind] = scan.beams[..] else {
+            panic!("{:?}", scan.beams);
+        };
+        assert_eq!(right.origin, [0.1, 0.0]);
+        assert_eq!(behind.origin, [-0.2, 0.0]);
+        assert!((right.end[1] + 1.0).abs() < 1e-5 && (behind.end[0] + 3.2).abs() < 1e-5);
     }
 }

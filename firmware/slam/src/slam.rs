@@ -20,7 +20,7 @@ use crate::graph::Graph;
 use crate::matrix::{Cholesky, turned};
 use crate::motion::Motion;
 use crate::pose::{Pose, sqrt};
-use crate::scan::{Laser, Scan};
+use crate::scan::{LASERS, Laser, Scan};
 use crate::solver;
 use crate::workspace::Workspace;
 
@@ -44,14 +44,40 @@ const LAST_ROUNDS: usize = 8;
 /// What a session says once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Config {
-    /// The laser.
-    pub laser: Laser,
+    /// The lasers; those without beams are not there.
+    pub lasers: [Laser; LASERS],
     /// What odometry may err.
     pub motion: Motion,
     /// Way after which a scan becomes a keyframe, metres.
     pub key_m: f32,
     /// Turn after which a scan becomes a keyframe, radians.
     pub key_rad: f32,
+    /// What may be left out.
+    pub rules: Rules,
+}
+
+/// Rules of the graph. Each can be left out, to see what it buys.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rules {
+    /// Φ of the robust weights: a closure whose χ² is greater loses weight. It is positive, and at
+    /// most [`Rules::NEVER`].
+    pub scaling: f32,
+    /// A closure waits until a second one agrees.
+    pub agreement: bool,
+    /// The motion that others located is a start of an alignment.
+    pub located: bool,
+}
+
+impl Rules {
+    /// Φ by which no closure loses weight.
+    pub const NEVER: f32 = 1e37;
+
+    /// All rules.
+    pub const ALL: Self = Self {
+        scaling: 20.0,
+        agreement: true,
+        located: true,
+    };
 }
 
 impl Config {
@@ -59,10 +85,21 @@ impl Config {
     #[must_use]
     pub const fn new(laser: Laser, motion: Motion) -> Self {
         Self {
-            laser,
+            lasers: [laser, Laser::NONE],
             motion,
             key_m: 0.25,
             key_rad: 0.2,
+            rules: Rules::ALL,
+        }
+    }
+
+    /// The same with a second laser.
+    #[must_use]
+    pub const fn with_second(self, laser: Laser) -> Self {
+        let [first, _] = self.lasers;
+        Self {
+            lasers: [first, laser],
+            ..self
         }
     }
 }
@@ -105,6 +142,8 @@ pub struct Slam<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> {
     /// Odometry and located pose at the last keyframe.
     odom: Pose,
     located: Option<Pose>,
+    /// Loops are closed now.
+    closes: bool,
 }
 
 impl<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> Slam<KEYS, LOOPS, BEAMS> {
@@ -124,16 +163,18 @@ impl<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> Slam<KEYS, LOOPS
         };
         Self {
             config,
-            graph: Graph::new(),
+            graph: Graph::new(config.rules.scaling),
             waiting: None,
             refused: 0,
             odom: ORIGIN,
             located: None,
+            closes: true,
         }
     }
 
-    /// Takes a scan, with odometry's pose and the pose that someone else located, if they did. The
-    /// first scan's located pose, or else odometry's, is its pose in the map.
+    /// Takes the ranges of all lasers, one laser after the other, with odometry's pose and the pose
+    /// that someone else located, if they did. The first scan's located pose, or else odometry's,
+    /// is its pose in the map.
     pub fn observe<const SIDE: usize>(
         &mut self,
         odom: &Pose,
@@ -152,7 +193,7 @@ impl<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> Slam<KEYS, LOOPS
             let motion = located_motion.unwrap_or(motion);
             return self.observed(motion);
         }
-        let scan = Scan::of(&self.config.laser, ranges_mm);
+        let scan = Scan::of(&self.config.lasers, ranges_mm);
         let (motion, factor) = if is_first {
             (*located.unwrap_or(odom), Cholesky::UNIT)
         } else {
@@ -176,6 +217,11 @@ impl<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> Slam<KEYS, LOOPS
     /// Solves the graph until it rests.
     pub fn finish<const SIDE: usize>(&mut self, workspace: &mut Workspace<KEYS, SIDE>) {
         solver::solve(&mut self.graph, &mut workspace.vectors, LAST_ROUNDS);
+    }
+
+    /// Says whether loops are closed from now on. At first they are.
+    pub fn set_closing(&mut self, closes: bool) {
+        self.closes = closes;
     }
 
     /// Tells that the frame of located poses has moved: all later ones are given in the new one.
@@ -232,7 +278,7 @@ impl<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> Slam<KEYS, LOOPS
         let first = keys.partition_point(|key| key.way_m < way_m - LOCAL.0);
         let first = first.min(keys.len().saturating_sub(LOCAL.1));
         for key in keys.iter().skip(first) {
-            let scan: Scan<BEAMS> = Scan::of(&self.config.laser, &key.ranges_mm);
+            let scan: Scan<BEAMS> = Scan::of(&self.config.lasers, &key.ranges_mm);
             workspace.grid.enter(&key.pose, &scan);
         }
         let grid = &workspace.grid;
@@ -243,6 +289,7 @@ impl<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> Slam<KEYS, LOOPS
             information: turned(&self.config.motion.information(motion), -predicted.yaw_rad),
         };
         let mut best = align(grid, scan, &predicted, &prior);
+        let located = located.filter(|_| self.config.rules.located);
         let located = located.filter(|located| {
             let off = located.minus(motion);
             let parts = off.iter().zip(&variances);
@@ -294,8 +341,13 @@ impl<const KEYS: usize, const LOOPS: usize, const BEAMS: usize> Slam<KEYS, LOOPS
         scan: &Scan<BEAMS>,
         workspace: &mut Workspace<KEYS, SIDE>,
     ) -> bool {
-        let scan = (&self.config.laser, scan);
-        let tried = try_to_close(&mut self.graph, &mut self.waiting, scan, workspace);
+        if !self.closes {
+            return false;
+        }
+        let scan = (&self.config.lasers, scan);
+        let agreement = self.config.rules.agreement;
+        let waiting = &mut self.waiting;
+        let tried = try_to_close(&mut self.graph, waiting, scan, workspace, agreement);
         self.refused += usize::from(tried == Tried::Refused);
         if tried != Tried::Closed {
             return false;

@@ -253,7 +253,7 @@ impl Linear {
     ) -> Option<Self> {
         let [from, to] = graph.ends(closure)?;
         let residual = closure.residual(&from, &to);
-        let weight = closure.weight(&residual);
+        let weight = graph.weight(closure, &residual);
         let (s, c) = sin_cos(from.yaw_rad);
         let (dx, dy) = (to.x_m - from.x_m, to.y_m - from.y_m);
         Some(Self {

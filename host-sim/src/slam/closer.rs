@@ -39,7 +39,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use fieldline_device::convert::quantity;
 use fieldline_planner::geometry::CELL_M;
 use fieldline_planner::map::tiles::TILE_SIDE;
-use fieldline_protocol::message::{Command, Observation, Quality, Start};
+use fieldline_protocol::message::{Command, Laser, Observation, Quality, Start};
 use fieldline_slam as graph;
 
 use super::others::{Others, class_at};
@@ -86,14 +86,38 @@ impl LoopCloser {
     /// laser.
     #[must_use]
     pub fn new(start: &Start, motion: graph::Motion) -> Option<Self> {
-        Some(Self {
-            graph: PoseGraph::new(start.lasers.first()?, motion),
+        let graph = PoseGraph::new(Self::lasers(start), motion)?;
+        Some(Self::with(start, graph))
+    }
+
+    /// Returns the lasers of a session that the graph takes. On uneven ground only the first one's
+    /// beams are known to end at what stands.
+    #[must_use]
+    pub fn lasers(start: &Start) -> &[Laser] {
+        let most = if start.uneven_ground.is_some() {
+            1
+        } else {
+            start.lasers.len()
+        };
+        start.lasers.get(..most).unwrap_or_default()
+    }
+
+    /// Closes the loops of a session with this empty graph.
+    #[must_use]
+    pub fn with(start: &Start, graph: PoseGraph) -> Self {
+        Self {
+            graph,
             start: start.clone(),
             scans: Vec::new(),
             sent: 0,
             largest_m: 0.0,
             map_from_graph: None,
-        })
+        }
+    }
+
+    /// Says whether loops are closed from now on.
+    pub fn set_closing(&mut self, closes: bool) {
+        self.graph.set_closing(closes);
     }
 
     /// Returns what became of the loops.
@@ -345,7 +369,7 @@ fn tile_of([x, y, _]: Pose) -> Key {
 mod tests {
     use core::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-    use fieldline_protocol::message::{Laser, NO_RETURN_MM, Scan as Sweep};
+    use fieldline_protocol::message::{NO_RETURN_MM, Scan as Sweep};
     use fixed::types::I16F16;
 
     use super::*;

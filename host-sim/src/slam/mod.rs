@@ -4,7 +4,8 @@
 //! observation, located pose ─► fieldline-slam ─► pose of every scan, corrected at each closure
 //! ```
 //!
-//! A scan hangs on a keyframe, and moves with it.
+//! A scan hangs on a keyframe, and moves with it. The graph takes the first laser, and a second one
+//! that does not look down.
 //!
 //! Units: metres, radians, millimetres where a name says so.
 
@@ -17,13 +18,14 @@ mod votes;
 use core::fmt;
 
 use fieldline_protocol::message::{
-    INVALID_MM, Laser, Location, NO_RETURN_MM, Observation, Quality,
+    INVALID_MM, Laser, Location, NO_RETURN_MM, Observation, Quality, Scan,
 };
 use fieldline_slam as graph;
 use serde::{Deserialize, Serialize};
 
 pub use canvas::Canvas;
 pub use closer::LoopCloser;
+pub use fieldline_slam::Rules;
 
 use crate::replay::relations::Pose;
 
@@ -31,8 +33,8 @@ use crate::replay::relations::Pose;
 pub const KEYFRAMES: usize = 16_384;
 /// Most closures. There is at most one each metre of way.
 pub const CLOSURES: usize = 8_192;
-/// Most ranges of a scan.
-const BEAMS: usize = fieldline_protocol::message::MAX_BEAMS;
+/// Most ranges of all lasers.
+const BEAMS: usize = graph::LASERS * fieldline_protocol::message::MAX_BEAMS;
 /// Cells of 10 cm along the side of a grid: 51 m.
 const SIDE: usize = 512;
 /// Bytes of stack for what is made on the stack and then moved.
@@ -101,17 +103,28 @@ impl fmt::Display for SlamReport {
 }
 
 impl PoseGraph {
-    /// Returns an empty graph for a laser and the noise of the wheels.
+    /// Returns an empty graph for the lasers of a robot and the noise of its wheels. `None` without
+    /// a laser.
     #[must_use]
-    pub fn new(laser: &Laser, motion: graph::Motion) -> Self {
-        let laser = graph::Laser {
-            x_m: laser.x.to_num(),
-            y_m: laser.y.to_num(),
-            first_rad: laser.first_bearing.to_num(),
-            step_rad: laser.bearing_step.to_num(),
-            most_m: f32::from(laser.range_limit_mm) * 1e-3,
-        };
-        let config = graph::Config::new(laser, motion);
+    pub fn new(lasers: &[Laser], motion: graph::Motion) -> Option<Self> {
+        Some(Self::with(Self::config(lasers, motion)?))
+    }
+
+    /// Returns the usual configuration for the lasers of a robot and the noise of its wheels.
+    /// `None` without a laser.
+    #[must_use]
+    pub fn config(lasers: &[Laser], motion: graph::Motion) -> Option<graph::Config> {
+        let (first, others) = lasers.split_first()?;
+        let config = graph::Config::new(graph_laser(first), motion);
+        Some(match others {
+            [second, ..] if second.pitch == 0 => config.with_second(graph_laser(second)),
+            _ => config,
+        })
+    }
+
+    /// Returns an empty graph.
+    #[must_use]
+    pub fn with(config: graph::Config) -> Self {
         Self {
             graph: made_on_a_large_stack(move || Graph::new(config)),
             workspace: made_on_a_large_stack(Workspace::default),
@@ -122,7 +135,7 @@ impl PoseGraph {
         }
     }
 
-    /// Takes the first scan of an observation, with the pose that the device located. Returns the
+    /// Takes the scans of an observation, with the pose that the device located. Returns the
     /// pose in the graph's map, and whether the past was corrected.
     pub fn observe(
         &mut self,
@@ -142,15 +155,10 @@ impl PoseGraph {
             yaw_rad: observation.pose.yaw.to_num(),
         };
         let located = located.map(graph_pose);
-        let ranges = observation.scans.first().map(|scan| &scan.ranges_mm);
-        let ranges: Vec<u16> = ranges
-            .into_iter()
-            .flatten()
-            .map(|&range_mm| match range_mm {
-                INVALID_MM => 0,
-                NO_RETURN_MM => u16::MAX,
-                measured => measured,
-            })
+        let lasers = self.graph.config().lasers.iter();
+        let ranges: Vec<u16> = lasers
+            .zip(&observation.scans)
+            .flat_map(|(laser, scan)| ranges_of(laser, scan))
             .collect();
         let seen = self
             .graph
@@ -167,6 +175,11 @@ impl PoseGraph {
     /// Tells that the device's map was corrected, and its located poses with it.
     pub fn relocate(&mut self, motion: Pose) {
         self.graph.relocate(&graph_pose(motion));
+    }
+
+    /// Says whether loops are closed from now on.
+    pub fn set_closing(&mut self, closes: bool) {
+        self.graph.set_closing(closes);
     }
 
     /// Solves the graph until it rests.
@@ -210,6 +223,27 @@ fn made_on_a_large_stack<T: Send + 'static>(make: impl FnOnce() -> T + Send + 's
     made.expect("memory for a thread")
         .join()
         .expect("making it does not panic")
+}
+
+fn graph_laser(laser: &Laser) -> graph::Laser {
+    graph::Laser {
+        x_m: laser.x.to_num(),
+        y_m: laser.y.to_num(),
+        first_rad: laser.first_bearing.to_num(),
+        step_rad: laser.bearing_step.to_num(),
+        beams: laser.beams.into(),
+        most_m: f32::from(laser.range_limit_mm) * 1e-3,
+    }
+}
+
+/// Returns as many ranges as a laser has beams; those that a scan lacks are no readings.
+fn ranges_of(laser: &graph::Laser, scan: &Scan) -> impl Iterator<Item = u16> {
+    let ranges = scan.ranges_mm.iter().map(|&range_mm| match range_mm {
+        INVALID_MM => 0,
+        NO_RETURN_MM => u16::MAX,
+        measured => measured,
+    });
+    ranges.chain(core::iter::repeat(0)).take(laser.beams)
 }
 
 fn graph_pose([x, y, yaw]: Pose) -> graph::Pose {

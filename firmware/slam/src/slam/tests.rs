@@ -15,6 +15,7 @@ const LASER: Laser = Laser {
     y_m: 0.0,
     first_rad: -core::f32::consts::FRAC_PI_2,
     step_rad: core::f32::consts::PI / 180.0,
+    beams: BEAMS,
     most_m: 10.0,
 };
 
@@ -213,6 +214,39 @@ fn a_robot_that_comes_back_closes_the_loop_and_corrects_its_past() {
             "live {live_m} m, end {end_m} m, {counts:?}"
         );
     }
+}
+
+/// Returns the numbers of closures on a way of one round and a bit.
+fn closures(config: Config, closes: bool) -> Vec<usize> {
+    let poses = drive(&[
+        [1.0, 1.0],
+        [19.0, 1.0],
+        [19.0, 11.0],
+        [1.0, 11.0],
+        [1.0, 1.0],
+        [9.0, 1.0],
+    ]);
+    let odom = odometry(&poses, 0.02, &mut Noise(1));
+    let mut slam: Box<Small> = Box::new(Slam::new(config));
+    slam.set_closing(closes);
+    let (mut room, mut noise): (Box<Room>, _) = (Box::default(), Noise(1));
+    let steps = poses.iter().zip(&odom);
+    let counts = steps.map(|(pose, odom)| {
+        slam.observe(odom, None, &cast(&ring(), pose, &mut noise), &mut room);
+        slam.counts().closed
+    });
+    counts.collect()
+}
+
+#[test]
+fn a_closure_needs_a_second_one_and_leave_to_close() {
+    let config = Config::new(LASER, Motion::WHEELS);
+    let first = |counts: &[usize]| counts.iter().copied().find(|count| *count > 0);
+    assert_eq!(first(&closures(config, true)), Some(2));
+    let mut alone = config;
+    alone.rules.agreement = false;
+    assert_eq!(first(&closures(alone, true)), Some(1));
+    assert_eq!(first(&closures(config, false)), None);
 }
 
 /// Two equal corridors side by side, joined by a hall: the second one is no return to the first.

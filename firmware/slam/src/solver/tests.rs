@@ -3,6 +3,7 @@
 use std::vec::Vec;
 
 use super::{Vectors, down, pull, solve, up};
+use crate::Rules;
 use crate::graph::{Closure, Graph};
 use crate::matrix::{Cholesky, diagonal, dot};
 use crate::pose::Pose;
@@ -19,7 +20,7 @@ fn factor() -> Cholesky {
 
 /// Keyframes once round a square of 4 m, a metre apart, whose odometry turns a little too much.
 fn square(drift_rad: f32) -> Small {
-    let mut graph = Small::new();
+    let mut graph = Small::new(Rules::ALL.scaling);
     graph.add(&Pose::default(), Cholesky::UNIT, &[]).unwrap();
     for k in 1..=16 {
         let turn = if k % 4 == 0 {
@@ -177,4 +178,12 @@ fn a_graph_without_closures_stays_where_it_is() {
     let before = graph.pose(16);
     solve(&mut graph, &mut Vectors::new(), 3);
     assert_eq!(graph.pose(16), before);
+}
+
+#[test]
+fn without_robust_weights_a_wrong_closure_counts_as_any_other() {
+    let wrong = closure(2, 14, pose(3.0, 3.0, 1.0));
+    let weight = |scaling| Small::new(scaling).weight(&wrong, &[3.0, 3.0, 1.0]);
+    assert!(weight(Rules::ALL.scaling) < 1e-3);
+    assert_eq!(weight(Rules::NEVER), 1.0);
 }
