@@ -72,6 +72,10 @@ pub struct MapErrors {
     /// Share of the true walls around the floor that have an obstacle cell within 0.3 m.
     #[serde(default)]
     pub walls_share: Option<f64>,
+    /// Known area, in per cent of what a whole exploration at the true poses makes of the same
+    /// scans. A map that is folded over itself has less, and one that has a place twice has more.
+    #[serde(default)]
+    pub area_percent: Option<f64>,
 }
 
 /// Percentiles of the distance of an obstacle cell to a true surface.

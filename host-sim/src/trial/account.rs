@@ -71,6 +71,14 @@ impl Account {
         self.mirror = Mirror::new(&setup.start);
     }
 
+    /// Returns the area of a device's map of so many known cells, in per cent of what a whole
+    /// exploration at the true poses makes; `None` if nothing was seen.
+    pub(super) fn area_percent(&self, known: usize) -> Option<f64> {
+        let seen = self.seen.as_ref().unwrap_or(&self.mirror).known();
+        let whole = seen as f64 / self.coverage.fraction();
+        (seen > 0).then(|| 100.0 * known as f64 / whole)
+    }
+
     /// Returns true if the robot truly saw a cell.
     pub(super) fn has_seen(&self, cell: Cell) -> bool {
         let seen = self.seen.as_ref().unwrap_or(&self.mirror);

@@ -245,6 +245,16 @@ impl Mirror {
         self.map.class(cell) != Class::Unknown
     }
 
+    /// Returns the number of cells that have been measured.
+    #[must_use]
+    pub fn known(&self) -> usize {
+        let rows = self.tiles().flat_map(|(_, [low, high])| {
+            let rows = low.into_iter().zip(high);
+            rows.map(|(low, high)| (low | high).count_ones() as usize)
+        });
+        rows.sum()
+    }
+
     /// Returns true if the pool had no page for something that a beam met.
     #[must_use]
     pub const fn is_full(&self) -> bool {
@@ -356,6 +366,9 @@ mod tests {
         // The office's start is at (12, 7) in the corridor.
         assert!(mirror.is_known(Cell { x: 130, y: 70 }));
         assert!(!mirror.is_known(Cell { x: -50, y: 70 }));
+        let cells = (-300..500).flat_map(|x| (-300..500).map(move |y| Cell { x, y }));
+        let known = cells.filter(|cell| mirror.is_known(*cell)).count();
+        assert_eq!(mirror.known(), known);
     }
 
     #[test]

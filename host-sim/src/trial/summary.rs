@@ -67,7 +67,7 @@ pub(super) fn report(
         safety: safety(simulator),
         true_ground: true_ground(simulator, record),
         localization: record.localization(),
-        map: map_errors(world, simulator.start(), record),
+        map: map_errors(world, simulator.start(), account, record),
         planner: record.planner(),
         field: record.field(),
         link_stats: record.link_stats,
@@ -133,7 +133,12 @@ fn disturbances(mission: &Mission) -> Option<String> {
 }
 
 /// Returns the errors of the map's walls. In an uneven world an obstacle may be a slope.
-fn map_errors(world: &World, start: Start, record: &Record) -> Option<report::MapErrors> {
+fn map_errors(
+    world: &World,
+    start: Start,
+    account: &Account,
+    record: &Record,
+) -> Option<report::MapErrors> {
     if world.elevation().is_some() {
         return None;
     }
@@ -148,6 +153,7 @@ fn map_errors(world: &World, start: Start, record: &Record) -> Option<report::Ma
         }),
         ghost_share: error.map_or(0.0, |error| error.ghost_share),
         walls_share: walls_share(world, start, &record.map),
+        area_percent: account.area_percent(record.map.known()),
     })
 }
 
