@@ -6,6 +6,7 @@
 //! on standard error that names the argument and the remedy. Standard output has results only:
 //! text, or with `--json` one JSON object a line.
 
+mod along;
 mod args;
 mod bringup;
 mod campaign;

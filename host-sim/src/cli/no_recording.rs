@@ -7,8 +7,10 @@ use anyhow::{Result, bail};
 
 use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
-use host_sim::report::{MadeBy, Report};
+use host_sim::report::MadeBy;
+use host_sim::trial::Watch;
 use host_sim::trial::sight::Sight;
+use serde::Serialize;
 
 /// There is none.
 pub(super) struct Recorder(Infallible);
@@ -27,7 +29,7 @@ impl Recorder {
         match self.0 {}
     }
 
-    pub(super) fn end(&self, _: Option<&Report>) {
+    pub(super) fn end(&self, _: Option<&impl Serialize>) {
         match self.0 {}
     }
 }
@@ -39,6 +41,12 @@ pub(super) const fn is_recording(_: &Path) -> bool {
 }
 
 /// Says what is missing.
-pub(super) fn replay(_: &Path, _: &LinkSpec, _: &Options, _: bool) -> Result<bool> {
+pub(super) fn replay(
+    _: &Path,
+    _: &LinkSpec,
+    _: &Options,
+    _: bool,
+    _: &mut dyn Watch,
+) -> Result<bool> {
     bail!(MISSING)
 }

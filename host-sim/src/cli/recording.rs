@@ -9,8 +9,10 @@ use anyhow::{Context as _, Result, bail};
 use host_sim::link::Link;
 use host_sim::link::spec::{LinkSpec, Options};
 use host_sim::recording::{self, Recording, Replayed, Tap};
-use host_sim::report::{MadeBy, Report};
+use host_sim::report::MadeBy;
+use host_sim::trial::Watch;
 use host_sim::trial::sight::Sight;
+use serde::Serialize;
 
 use super::{note, note_build, say};
 
@@ -50,7 +52,7 @@ impl Recorder {
     }
 
     /// Ends the file with the report, and says if it is not whole.
-    pub(super) fn end(&self, report: Option<&Report>) {
+    pub(super) fn end(&self, report: Option<&impl Serialize>) {
         if let Some(why) = self.recording.borrow_mut().end(report) {
             note(&format!("host-sim: {}: {why}", self.file.display()));
         }
@@ -63,6 +65,7 @@ pub(super) fn replay(
     link: &LinkSpec,
     options: &Options,
     as_json: bool,
+    watch: &mut dyn Watch,
 ) -> Result<bool> {
     let name = file.display();
     let exchanges = recording::read(file).with_context(|| name.to_string())?;
@@ -77,8 +80,8 @@ pub(super) fn replay(
     let mut device = link
         .open(options)
         .with_context(|| format!("--link {link}"))?;
-    let replayed =
-        recording::replay(&exchanges, device.as_mut()).with_context(|| format!("--link {link}"))?;
+    let replayed = recording::replay(&exchanges, device.as_mut(), watch);
+    let replayed = replayed.with_context(|| format!("--link {link}"))?;
     if as_json {
         say(&serde_json::to_string(&replayed)?)?;
     } else {

@@ -122,6 +122,15 @@ impl Observer {
         }));
     }
 
+    /// Tells the end of a session that was made again.
+    pub fn end_again(&mut self, text: &str) {
+        let headline = text.lines().next().unwrap_or_default();
+        self.finish(&json!({
+            "status": "finished", "reason": "replayed", "headline": headline, "short": "",
+            "text": text, "digest": "", "known": 1.0, "requests": 0, "left": [],
+        }));
+    }
+
     /// Tells that the run failed before it had a report.
     pub fn fail(&mut self, why: &str) {
         self.finish(&json!({
@@ -214,6 +223,7 @@ impl Observer {
             },
             "uneven": start.uneven_ground.is_some(),
             "inside": sight.inside().is_some(),
+            "again": sight.again,
             "fence": fence,
         });
         frame::json(out, Kind::Run, &run);

@@ -10,10 +10,12 @@
 //! keeps every bit. The decimals of JSON would not: of the 65,536 fractions of a quantity with 16
 //! bits, `fixed` prints eight so that they are read one bit off.
 
+use core::time::Duration;
 use std::path::Path;
+use std::time::Instant;
 
 use fieldline_protocol::SCHEMA;
-use fieldline_protocol::message::{Reply, Request};
+use fieldline_protocol::message::{Control, Reply, Request};
 use mcap::read::{LinearReader, Options};
 use mcap::records::Record;
 use serde::{Deserialize, Serialize};
@@ -22,6 +24,8 @@ use thiserror::Error;
 use super::{MADE_BY, REPLIES, REQUESTS, SCHEMA_KEY};
 use crate::link::digest::Digest;
 use crate::link::{Link, LinkError};
+use crate::trial::showing::Showing;
+use crate::trial::{Flow, Watch};
 
 /// The first bytes of a recording.
 const MAGIC: &[u8] = b"\x89MCAP0\r\n";
@@ -55,6 +59,16 @@ pub struct Exchanges {
     pub list: Vec<Exchange>,
     /// The file ends before its end: it was cut, or its run was killed.
     pub is_cut: bool,
+}
+
+impl Exchanges {
+    /// Returns the number of observations.
+    #[must_use]
+    pub fn steps(&self) -> usize {
+        let requests = self.list.iter().map(|it| &it.request);
+        let observations = requests.filter(|it| matches!(it, Request::Observation(_)));
+        observations.count()
+    }
 }
 
 /// Why a file is no recording.
@@ -204,12 +218,18 @@ impl Replayed {
     }
 }
 
-/// Makes the requests of a recording again. It ends with the first answer that differs.
+/// Makes the requests of a recording again, and shows the steps. It ends with the first answer that
+/// differs, or when the watcher says so.
 ///
 /// # Errors
 /// As [`LinkError`], where the recorded link did not fail.
-pub fn replay(exchanges: &Exchanges, link: &mut dyn Link) -> Result<Replayed, LinkError> {
+pub fn replay(
+    exchanges: &Exchanges,
+    link: &mut dyn Link,
+    watch: &mut dyn Watch,
+) -> Result<Replayed, LinkError> {
     let mut replayed = Replayed::default();
+    let mut showing = None;
     link.hello()?;
     for exchange in &exchanges.list {
         // A reboot, or a broken line, is no deed of the device.
@@ -217,7 +237,21 @@ pub fn replay(exchanges: &Exchanges, link: &mut dyn Link) -> Result<Replayed, Li
             continue;
         }
         replayed.requests += 1;
-        let same = match (&exchange.told, link.ask(&exchange.request)) {
+        let (asked, answer) = (Instant::now(), link.ask(&exchange.request));
+        if let Ok(reply) = &answer {
+            let step = (&exchange.request, reply);
+            let flow = show(
+                &mut showing,
+                exchanges,
+                step,
+                asked.elapsed(),
+                (link, watch),
+            );
+            if flow == Flow::Interrupt {
+                break;
+            }
+        }
+        let same = match (&exchange.told, answer) {
             (Told::Reply(before), Ok(now)) => replayed.agrees(before, &now),
             (Told::Refused(_), Err(LinkError::Refused(_))) => true,
             (_, Ok(_) | Err(LinkError::Refused(_))) => false,
@@ -229,6 +263,26 @@ pub fn replay(exchanges: &Exchanges, link: &mut dyn Link) -> Result<Replayed, Li
         }
     }
     Ok(replayed)
+}
+
+/// Shows a step; a session begins with its start.
+fn show(
+    showing: &mut Option<Showing>,
+    exchanges: &Exchanges,
+    step: (&Request, &Reply),
+    took: Duration,
+    (link, watch): (&mut dyn Link, &mut dyn Watch),
+) -> Flow {
+    match (step, showing.as_mut()) {
+        ((Request::Control(Control::Start(start)), _), _) => {
+            *showing = Some(Showing::new(start, exchanges.steps(), false));
+        }
+        ((Request::Observation(observation), Reply::Command(command)), Some(showing)) => {
+            return showing.step((observation, command), took, link, watch);
+        }
+        _ => {}
+    }
+    Flow::Continue
 }
 
 #[cfg(test)]
@@ -248,7 +302,7 @@ mod tests {
         for it in exchanges {
             recording.exchange(&it.request, &it.told);
         }
-        assert_eq!(recording.end(None), None);
+        assert_eq!(recording.end(None::<&()>), None);
         let read = read(&path).expect("a recording");
         assert!(!read.is_cut);
         read.list
@@ -298,7 +352,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join("run.mcap");
         let recording = Recording::create(&path, &MadeBy::default());
-        assert_eq!(recording.expect("a file").end(None), None);
+        assert_eq!(recording.expect("a file").end(None::<&()>), None);
         assert_eq!(read(&path), Err(ReadError::NoSession));
         assert!(matches!(read(folder.path()), Err(ReadError::File(_))));
     }

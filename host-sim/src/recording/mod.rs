@@ -42,11 +42,12 @@ use fieldline_protocol::SCHEMA;
 use fieldline_protocol::message::{Reply, Request};
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, Compression, WriteOptions, Writer};
+use serde::Serialize;
 
 pub use exchange::{Exchange, Exchanges, ReadError, Replayed, Told, is_recording, read, replay};
 pub use tap::Tap;
 
-use crate::report::{MadeBy, Report};
+use crate::report::MadeBy;
 use crate::trial::sight::Sight;
 use ros::Message;
 use topics::Topics;
@@ -129,7 +130,7 @@ impl Recording {
     }
 
     /// Records the report, and ends the file. Returns why it is not whole, if it is not.
-    pub fn end(&mut self, report: Option<&Report>) -> Option<String> {
+    pub fn end(&mut self, report: Option<&impl Serialize>) -> Option<String> {
         if let Some(report) = report {
             let data = serde_json::to_vec_pretty(report).unwrap_or_default();
             let log_time = self.nanoseconds();

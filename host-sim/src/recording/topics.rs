@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use fieldline_protocol::message::{INVALID_MM, Laser, NO_RETURN_MM, Observation, Pose as Wire};
+use fieldline_protocol::message::{INVALID_MM, Laser, NO_RETURN_MM, Pose as Wire};
 
 use super::Recording;
 use super::ros::{
@@ -67,15 +67,13 @@ impl Topics {
             self.is_begun = true;
             to.tell("/tf_static", &mounts(lasers));
         }
-        tell_poses(step, sight.observation, to);
+        tell_poses(step, sight, to);
         tell_scans(time_ms, lasers, sight, to);
         self.tell_words(step, to);
-        to.tell(
-            "/coverage",
-            &Float32 {
-                data: sight.record().coverage as f32,
-            },
-        );
+        if !sight.again {
+            let data = sight.record().coverage as f32;
+            to.tell("/coverage", &Float32 { data });
+        }
         self.tell_map(time_ms, sight, to);
         self.tell_plan(time_ms, sight, to);
     }
@@ -124,8 +122,8 @@ impl Topics {
     }
 }
 
-fn tell_poses(step: &Step, observation: &Observation, to: &mut Recording) {
-    let time_ms = step.truth.time_ms;
+fn tell_poses(step: &Step, sight: &Sight<'_>, to: &mut Recording) {
+    let (time_ms, observation) = (step.truth.time_ms, sight.observation);
     let odom = in_odometry(&observation.pose);
     let twist = Twist::of(
         observation.velocity.linear.to_num(),
@@ -155,7 +153,8 @@ fn tell_poses(step: &Step, observation: &Observation, to: &mut Recording) {
             transforms: transforms.into(),
         },
     );
-    for (topic, pose) in [("/pose", &step.estimate), ("/true_pose", &step.truth)] {
+    let truth = (!sight.again).then_some(("/true_pose", &step.truth));
+    for (topic, pose) in [("/pose", &step.estimate)].into_iter().chain(truth) {
         to.tell(
             topic,
             &PoseStamped {

@@ -16,6 +16,7 @@
 //! Units: metres, radians, milliseconds.
 
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 use fieldline_device::{TILES, convert};
 use fieldline_planner::config::Tuning;
@@ -32,7 +33,9 @@ use crate::robot::wrap;
 use crate::slam::{Canvas, PoseGraph, SlamReport};
 use crate::trial::at_once::AtOnce;
 use crate::trial::mirror::Mirror;
+use crate::trial::showing::Showing;
 use crate::trial::snapshot;
+use crate::trial::{Flow, Watch};
 
 /// The record of a replay.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,8 +128,7 @@ pub fn is_default_pool(tile_pool: u16) -> bool {
 }
 
 /// Replays scans of a laser with this odometry, with a pose graph beside the device if `slam` has
-/// the noise of the wheels. `step` is called before each step with its number, and ends
-/// the replay if it returns false.
+/// the noise of the wheels. The watcher may end it.
 ///
 /// # Errors
 /// As [`LinkError`].
@@ -136,9 +138,9 @@ pub fn run(
     odometry: &[Pose],
     link: &mut dyn Link,
     slam: Option<Motion>,
-    step: &mut dyn FnMut(usize) -> bool,
+    watch: &mut dyn Watch,
 ) -> Result<Replayed, LinkError> {
-    let mut graph = slam.map(|motion| PoseGraph::new(laser.announced(), motion));
+    let mut graph = slam.and_then(|motion| PoseGraph::new(&[*laser.announced()], motion));
     let tile_pool = link.hello()?.tile_pool;
     let start = start(laser);
     let (config, mut at_once) = (convert::config(&start, &Tuning::DEFAULT), AtOnce::default());
@@ -148,14 +150,16 @@ pub fn run(
     let mut map_from_odom = [0.0; 3];
     let mut input_faults = InputFaults::default();
     let mut seen = Vec::new();
-    for (number, ((scan, odom), time_ms)) in scans.iter().zip(odometry).zip(times).enumerate() {
-        if !step(number) {
-            break;
-        }
-        let mut located = None;
+    let copies = link.end().inside().is_none();
+    let mut showing = Showing::new(&start, scans.len(), copies);
+    for ((scan, odom), time_ms) in scans.iter().zip(odometry).zip(times) {
+        let (mut located, mut flow) = (None, Flow::Continue);
         let observation = laser.observation(scan, time_ms, *odom);
         if status == Status::Exploring {
+            let asked = Instant::now();
             let command = link.observe(&observation)?;
+            let step = (&observation, &command);
+            flow = showing.step(step, asked.elapsed(), link, watch);
             status = command.status;
             located = command.location;
             input_faults = input_faults.after(command.input_faults);
@@ -170,6 +174,9 @@ pub fn run(
             seen.push(observation);
         }
         qualities.push(located.map_or(Quality::Lost, |location| location.quality));
+        if flow == Flow::Interrupt {
+            break;
+        }
     }
     let places: Vec<[f64; 2]> = poses.iter().map(|pose| [pose[0], pose[1]]).collect();
     let mut replayed = Replayed {
@@ -236,9 +243,7 @@ mod tests {
         let scans = log(20, 1.2);
         let own = odometry(&scans, None, 0);
         let laser = LogLaser::of(&scans);
-        let replayed = run(&laser, &scans, &own, &mut Direct::new(), None, &mut |_| {
-            true
-        });
+        let replayed = run(&laser, &scans, &own, &mut Direct::new(), None, &mut ());
         let replayed = replayed.unwrap();
         assert_eq!(replayed.input_faults, InputFaults::default());
         let [x, y, _] = replayed.poses[19];

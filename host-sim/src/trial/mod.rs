@@ -21,6 +21,7 @@ pub mod planned_path;
 pub mod record;
 pub mod relief;
 pub mod series;
+pub mod showing;
 pub mod sight;
 pub mod snapshot;
 pub mod space;
@@ -194,6 +195,7 @@ fn drive(
             observation: &observation,
             mirror: cast.survey.mirror().map(|mirror| &*mirror),
             ending: ended.as_ref(),
+            again: false,
             record,
             itinerary: Some(itinerary),
             link: cast.link,

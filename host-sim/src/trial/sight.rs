@@ -35,8 +35,11 @@ pub struct Sight<'a> {
     pub mirror: Option<&'a Mirror>,
     /// What ends the run with this step; `None` if it goes on.
     pub ending: Option<&'a Ending>,
+    /// The session is made again from a log or a recording. Then the record's true poses are those
+    /// of odometry, and its coverage is the share of the session that is over.
+    pub again: bool,
     pub(super) record: &'a mut Record,
-    /// `None` for a robot of a team, which takes no requests.
+    /// `None` for a robot that takes no requests: one of a team, or of a session made again.
     pub(super) itinerary: Option<&'a mut Itinerary>,
     pub(super) link: &'a mut dyn Link,
 }
@@ -100,8 +103,8 @@ impl Sight<'_> {
     ///
     /// # Errors
     /// As [`LinkError`]; [`LinkError::Refused`] if the device says no, the run has ended, the robot
-    /// is one of a team, or the request is none that a viewer may make. A link that fails ends the
-    /// run with the next step.
+    /// is one of a team or of a session made again, or the request is none that a viewer may make.
+    /// A link that fails ends the run with the next step.
     pub fn request(&mut self, control: &Control) -> Result<Status, LinkError> {
         let answer = self.ask(control);
         let (words, done) = match &answer {
@@ -126,8 +129,13 @@ impl Sight<'_> {
             return Err(LinkError::Refused("the run has ended".into()));
         }
         let Some(itinerary) = self.itinerary.as_mut() else {
-            let why = "a robot of a team takes no requests of a viewer";
-            return Err(LinkError::Refused(why.into()));
+            let whose = if self.again {
+                "a session that is made again"
+            } else {
+                "a robot of a team"
+            };
+            let why = format!("{whose} takes no requests of a viewer");
+            return Err(LinkError::Refused(why));
         };
         match control {
             Control::Pause | Control::Stop => self.link.control(control),

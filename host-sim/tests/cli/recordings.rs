@@ -10,6 +10,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::refusals::refused;
+use crate::replay::with_log;
 use crate::{folder, outcome, reports};
 
 /// A run of a minute.
@@ -151,6 +152,43 @@ fn each_robot_of_a_team_is_recorded_and_done_again() {
         .chain(["--out", "o", "--record", "team"])
         .collect();
     refused(&folder, &again, &["robot-0.mcap", "--force"]);
+}
+
+/// A log has no truth, and no world of which a share is known.
+#[test]
+fn a_replayed_log_is_recorded_and_done_again() {
+    let folder = with_log(180);
+    let replay = |more: &[&str]| {
+        let words = [
+            "replay",
+            "a.log",
+            "--degrade",
+            "4",
+            "--json",
+            "--out",
+            "out",
+        ];
+        let (status, stdout, stderr) = outcome(&folder, &[&words[..], more].concat());
+        assert_eq!(status, 0, "{stderr}");
+        let mut report = reports(&stdout).pop().expect("a report");
+        report["made_by"] = Value::Null;
+        report
+    };
+    let plain = replay(&[]);
+    assert_eq!(replay(&["--record", "log.mcap"]), plain);
+    let topics = topics(&fs::read(folder.path().join("log.mcap")).expect("a file"));
+    for topic in ["/scan", "/odom", "/pose"] {
+        assert_eq!(topics[topic], 60, "{topic}");
+    }
+    assert!(topics["/map"] > 1);
+    assert!(!topics.contains_key("/true_pose") && !topics.contains_key("/coverage"));
+    let (status, again, stderr) = replayed(&folder, "log.mcap", &["--link", "direct"]);
+    assert_eq!((status, stderr.as_str()), (0, ""));
+    assert_eq!(again["commands"], 60);
+    let is_there = ["replay", "a.log", "--record", "log.mcap"];
+    refused(&folder, &is_there, &["log.mcap", "--force"]);
+    let twice = ["replay", "log.mcap", "--record", "two.mcap"];
+    refused(&folder, &twice, &["--record", "recording"]);
 }
 
 #[test]

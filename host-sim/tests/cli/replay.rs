@@ -68,7 +68,8 @@ fn relations(ahead: f64) -> String {
     out
 }
 
-fn with_log(beams: u32) -> TempDir {
+/// Returns a folder with a log, `a.log`.
+pub(crate) fn with_log(beams: u32) -> TempDir {
     let folder = folder();
     fs::write(folder.path().join("a.log"), log(beams)).unwrap();
     folder

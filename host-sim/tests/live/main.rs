@@ -2,6 +2,7 @@
 //!
 //! A viewer is a program with a websocket; `browser.rs` has a browser.
 
+mod again;
 mod browser;
 mod client;
 mod hostile;

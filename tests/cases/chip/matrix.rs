@@ -320,7 +320,7 @@ fn replay(image: &Path) -> Taken {
     let laser = LogLaser::of(&log);
     let odometry = run::odometry(&log, Some(2.0), 0);
     let by = |link: &mut dyn Link| {
-        run::run(&laser, &log, &odometry, link, None, &mut |_| true)
+        run::run(&laser, &log, &odometry, link, None, &mut ())
             .expect("the replay goes on to its end")
     };
     let (mut instructions, mut stack_bytes) = (0, 0);

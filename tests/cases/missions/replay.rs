@@ -121,7 +121,7 @@ mod data {
             &odometry,
             &mut Direct::default(),
             None,
-            &mut |_| true,
+            &mut (),
         );
         let replayed = replayed.expect("the planner answers");
         let poses = &replayed.poses;

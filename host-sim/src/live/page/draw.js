@@ -136,7 +136,7 @@ function drawAll(context, view, history, cells, show) {
     if (show.true) drawRobot(context, view, history, step.true, "true");
     drawCovariance(context, view, step);
     drawRobot(context, view, history, step.believed, "believed");
-    drawNames(context, view, step, show);
+    drawNames(context, view, history, step, show);
   }
   if (show.aim) drawAim(context, view, show.aim);
   drawScale(context, view);
@@ -357,7 +357,7 @@ function drawCovariance(context, view, step) {
   context.stroke();
 }
 
-function drawNames(context, view, step, show) {
+function drawNames(context, view, history, step, show) {
   context.font = font(14, 600);
   const name = (pose, words, colour, dx, dy, align) => {
     const [x, y] = view.spot(pose[0], pose[1]);
@@ -371,7 +371,7 @@ function drawNames(context, view, step, show) {
   };
   const off = 10 + 0.25 * view.scale;
   name(step.believed, "believed", COLOUR.believed, off, -off, "left");
-  if (show.true) name(step.true, "true", "#b35f00", -off, off + 10, "right");
+  if (show.true) name(step.true, second(history.run), "#b35f00", -off, off + 10, "right");
 }
 
 function drawAim(context, view, aim) {

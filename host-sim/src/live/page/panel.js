@@ -24,7 +24,9 @@ function showNumbers(history) {
     document.title = `${run.world} – Fieldline live`;
   }
   if (!step) return;
+  say("known-of", again(run) ? "Replayed" : "Known");
   say("known", (100 * step.known).toFixed(1) + " %");
+  say("second-pose", second(run));
   say("driven", step.driven.toFixed(1) + " m");
   say("speed", step.v.toFixed(2) + " m/s");
   say("quality", QUALITY[step.quality]);
@@ -64,7 +66,7 @@ function showStatus(history) {
   const status = history.shown.status, end = history.end;
   const isEnd = end && history.at >= history.steps.length - 1;
   say("status", isEnd ? words(end.status) + ": " + words(end.reason) : words(status));
-  const bad = isEnd ? !/^(explored|covered|at-home)$/.test(end.reason) : /^(fault|emergency|unreach)/.test(status);
+  const bad = isEnd ? !/^(explored|covered|at-home|replayed)$/.test(end.reason) : /^(fault|emergency|unreach)/.test(status);
   const good = isEnd ? !bad : /^(finished|arrived)/.test(status);
   const stands = /^(paused|no-scan|idle)/.test(status);
   $("status").className = "pill" + (bad ? " bad" : good ? " good" : stands ? " stands" : "");
@@ -134,8 +136,12 @@ function drawCurve(history) {
   context.fillRect(x(Math.max(0, history.at)) - 1, 0, 2, height);
   context.font = font(13);
   context.textAlign = "left";
-  context.fillText("known area over time", inset + 4, 14 * UNIT);
+  context.fillText(again(history.run) ? "replayed" : "known area over time", inset + 4, 14 * UNIT);
 }
+
+// A session that is made again has no truth: odometry stands in its place.
+function again(run) { return Boolean(run && run.again); }
+function second(run) { return again(run) ? "odometry" : "true"; }
 
 // Returns the context of a canvas in page pixels, and its size, for a sharp picture.
 function fitted(canvas) {
@@ -173,8 +179,10 @@ const arrow = which => context => {
 const LEGEND = [
   ["free", square(COLOUR.free)], ["obstacle", square(COLOUR.obstacle)],
   ["unknown", square(COLOUR.unknown)], ["hole, cliff", square(COLOUR.negative), "uneven"],
-  ["robot, believed", arrow("believed")], ["robot, true", arrow("true")],
-  ["way, believed", stroke(COLOUR.believed, 2)], ["way, true", stroke(COLOUR.true, 3, [7, 5])],
+  ["robot, believed", arrow("believed")], ["robot, true", arrow("true"), "truth"],
+  ["robot, odometry", arrow("true"), "again"], ["way, believed", stroke(COLOUR.believed, 2)],
+  ["way, true", stroke(COLOUR.true, 3, [7, 5]), "truth"],
+  ["way, odometry", stroke(COLOUR.true, 3, [7, 5]), "again"],
   ["scan", context => { square(COLOUR.scan + "22", "#0000")(context); context.fillStyle = COLOUR.scan;
     for (const [x, y] of [[6, 4], [13, 3], [19, 6]]) context.fillRect(x, y, 4, 4); }],
   ["skeleton", stroke(COLOUR.skeleton, 2), "inside"],
@@ -187,7 +195,7 @@ const LEGEND = [
 ];
 
 function drawLegend(run) {
-  const has = { uneven: run.uneven, inside: run.inside, ouroboros: run.strategy === "ouroboros", fence: run.fence.length };
+  const has = { again: again(run), truth: !again(run), uneven: run.uneven, inside: run.inside, ouroboros: run.strategy === "ouroboros", fence: run.fence.length };
   $("legend-list").replaceChildren(...LEGEND.filter(([, , of]) => !of || has[of]).map(([name, draw]) => {
     const item = document.createElement("li"), canvas = document.createElement("canvas");
     canvas.width = 52;

@@ -277,6 +277,7 @@ impl<'a> Member<'a> {
             observation: &observation,
             mirror: None,
             ending: ending.as_ref(),
+            again: false,
             record: &mut self.record,
             itinerary: None,
             link: self.link,
