@@ -82,6 +82,9 @@ pub(super) fn replay(
         .with_context(|| format!("--link {link}"))?;
     let replayed = recording::replay(&exchanges, device.as_mut(), watch);
     let replayed = replayed.with_context(|| format!("--link {link}"))?;
+    if replayed.is_same() && replayed.requests < exchanges.requests() {
+        bail!("interrupted after {} requests", replayed.requests);
+    }
     if as_json {
         say(&serde_json::to_string(&replayed)?)?;
     } else {

@@ -136,8 +136,9 @@ pub(super) fn run(args: &ReplayArgs) -> Result<bool> {
         }
     };
     let report = input.report(&link, tuning, (made_by, known), &replayed);
-    write(&input, &report, &replayed, &folder)?;
+    let written = write(&input, &report, &replayed, &folder);
     along.end(Ok(&report), &report.to_text());
+    written?;
     Ok(replayed.status == Status::Exploring)
 }
 

@@ -61,7 +61,21 @@ pub struct Exchanges {
     pub is_cut: bool,
 }
 
+impl Exchange {
+    /// Returns true if it is a deed of the device. A reboot, or a broken line, is none.
+    const fn is_carried(&self) -> bool {
+        !matches!(self.told, Told::Failed(_))
+    }
+}
+
 impl Exchanges {
+    /// Returns the number of requests that the recorded link carried.
+    #[must_use]
+    pub fn requests(&self) -> usize {
+        let carried = self.list.iter().filter(|it| it.is_carried());
+        carried.count()
+    }
+
     /// Returns the number of observations.
     #[must_use]
     pub fn steps(&self) -> usize {
@@ -232,8 +246,7 @@ pub fn replay(
     let mut showing = None;
     link.hello()?;
     for exchange in &exchanges.list {
-        // A reboot, or a broken line, is no deed of the device.
-        if matches!(exchange.told, Told::Failed(_)) {
+        if !exchange.is_carried() {
             continue;
         }
         replayed.requests += 1;

@@ -1,6 +1,9 @@
-//! Ablation of every tuned constant: the tables of `docs/ABLATION.md`, one case a room.
+//! Ablation of every tuned constant: the tables of `docs/ABLATION.md`, one case a room, and of
+//! the rules that close loops.
 //!
 //! `ABLATION_RUNS=4` makes only the first four runs of a room.
+
+mod closing;
 
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
