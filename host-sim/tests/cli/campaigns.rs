@@ -322,13 +322,23 @@ fn bad_arguments_of_a_campaign_are_refused_in_one_line() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("--shard"));
 }
 
+/// A robot of one of them.
+const ROBOT: &str = "two-lasers.yaml";
+
 #[test]
 fn the_committed_campaigns_are_good() {
     let folder = folder();
     let campaigns = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/campaigns");
+    // They name their files from the root of the repository.
+    let beside = folder.path().join("tests/campaigns");
+    fs::create_dir_all(&beside).expect("a folder");
+    fs::copy(campaigns.join(ROBOT), beside.join(ROBOT)).expect("a robot");
     let mut counts = Vec::new();
     for file in fs::read_dir(campaigns).expect("a folder") {
         let path = file.expect("a file").path();
+        if path.ends_with(ROBOT) {
+            continue;
+        }
         let words = ["campaign", "--list", path.to_str().expect("a name")];
         let (status, stdout, stderr) = outcome(&folder, &words);
         assert_eq!(status, 0, "{stderr}");
@@ -341,7 +351,7 @@ fn the_committed_campaigns_are_good() {
         counts.push(stdout.lines().count());
     }
     counts.sort_unstable();
-    assert_eq!(counts, [26, 36, 36, 72, 180, 450, 450, 600]);
+    assert_eq!(counts, [26, 36, 36, 60, 72, 180, 450, 450, 600]);
     assert!(!folder.path().join("out").exists(), "nothing was written");
 }
 

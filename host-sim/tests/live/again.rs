@@ -1,16 +1,18 @@
 //! The page of a log that is replayed: it shows odometry where a run shows the truth, and takes no
 //! requests.
 
-use host_sim::link::Link;
+use fieldline_protocol::message::Control;
 use host_sim::link::loopback::loopback;
-use host_sim::live::{About, Limits};
+use host_sim::link::{Link, LinkError};
+use host_sim::live::{About, Limits, Observer};
 use host_sim::replay::carmen::{Beams, LogScan};
 use host_sim::replay::run::{self, Replayed};
 use host_sim::replay::wire::LogLaser;
-use host_sim::trial::Watch;
+use host_sim::trial::sight::Sight;
+use host_sim::trial::{Flow, Progress, Watch};
 
 use crate::client::Viewer;
-use crate::{answered, open};
+use crate::open;
 
 const SCANS: u32 = 40;
 
@@ -37,6 +39,24 @@ fn log() -> Vec<LogScan> {
     (0..SCANS).map(scan).collect()
 }
 
+/// A page whose viewer sends the robot home.
+struct Page {
+    observer: Observer,
+    answer: Option<LinkError>,
+}
+
+impl Watch for Page {
+    fn step(&mut self, _: &Progress) -> Flow {
+        Flow::Continue
+    }
+
+    fn see(&mut self, sight: &mut Sight<'_>) {
+        self.observer.see(sight);
+        let answer = sight.request(&Control::Home);
+        self.answer = self.answer.take().or(answer.err());
+    }
+}
+
 /// Replays the log with odometry that drifts.
 fn replayed(watch: &mut dyn Watch) -> (Replayed, Vec<[f64; 3]>) {
     let scans = log();
@@ -52,14 +72,17 @@ fn a_log_is_shown_with_its_odometry_and_takes_no_requests() {
     let (alone, _) = replayed(&mut ());
     let live = open(Limits::default());
     let mut viewer = Viewer::come(live.address());
-    viewer.ask(r#"{"do":"home"}"#);
-    let mut page = live.observer(About::default(), || false);
-    while live.counts().viewers == 0 {
-        std::thread::yield_now();
-    }
+    let mut page = Page {
+        observer: live.observer(About::default(), || false),
+        answer: None,
+    };
     let (seen, odometry) = replayed(&mut page);
     assert_eq!(seen, alone, "a look changes nothing");
-    page.end_again("a log: 40 scans\nand more");
+    let Some(LinkError::Refused(why)) = &page.answer else {
+        panic!("{:?}", page.answer);
+    };
+    assert!(why.contains("made again"), "{why}");
+    page.observer.end_again("a log: 40 scans\nand more");
     let told = viewer.until_end();
     assert_eq!(told.run.as_ref().expect("a run")["again"], true);
     assert_eq!(told.steps.len(), SCANS as usize);
@@ -73,6 +96,4 @@ fn a_log_is_shown_with_its_odometry_and_takes_no_requests() {
     let end = told.end.as_ref().expect("an end");
     assert_eq!(end["reason"], "replayed");
     assert_eq!(end["headline"], "a log: 40 scans");
-    let (done, why) = answered(&viewer.told, "home").expect("an answer");
-    assert!(!done && why.contains("made again"), "{why}");
 }
