@@ -181,7 +181,11 @@ fn run_again(args: &ReplayArgs) -> Result<bool> {
     };
     let mut along = Along::begin(about(args, &link), args.live)?;
     let replayed = recording::replay(&args.log, &link, &options, args.common.json, &mut along);
-    let told = replayed.as_ref().map_err(|error| format!("{error:#}"));
+    let told = match &replayed {
+        Ok(false) => Err("the device's answers differ from the recorded ones".into()),
+        Ok(true) => Ok(&true),
+        Err(error) => Err(format!("{error:#}")),
+    };
     along.end(told, "the recorded session was made again");
     replayed
 }

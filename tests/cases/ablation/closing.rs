@@ -25,7 +25,7 @@ const WORLDS: [&str; 4] = [
 const SEEDS: u64 = 10;
 /// Simulated time of a run, milliseconds.
 const LIMIT_MS: u32 = 1_800_000;
-/// Steps after a loop in which closures count that only the strategy may ask for: 10 m of way.
+/// Steps after a loop of the strategy in which loops are closed: 20 s, some 10 m of way.
 const TOLD_STEPS: usize = 100;
 
 /// What is left out.
@@ -48,7 +48,7 @@ impl Without {
         (Self::HalfTheKeyframes, "every second keyframe"),
         (
             Self::ClosuresUntilTold,
-            "closures but after a loop of the strategy",
+            "closures, except after the strategy's loops",
         ),
     ];
 
